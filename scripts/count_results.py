@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """count_results.py FOLDER: adds up the test reports in a folder and prints "passed failed skipped".
 
-GoogleTest and Vitest write JUnit-like XML with every case. CTest's own report (ctest.junit) counts
-only for tests without such a file: programs that do not use GoogleTest, and programs that ended
-before they could write it."""
+GoogleTest and Vitest write JUnit-like XML with every case. For tests without such a file, the
+script reads CTest's own report (ctest.junit). These are programs that do not use GoogleTest, and
+programs that ended before they could write the file."""
 import pathlib
 import sys
 import xml.etree.ElementTree as ET
@@ -38,8 +38,8 @@ def main():
         for case in ET.parse(ctest).getroot().iter("testcase"):
             ran_wrong = case.find("failure") is not None or case.get("status") == "fail"
             if case.get("name") in reported:
-                # A program also counts as failed if all its cases passed but it failed afterward,
-                # for example because of a leak report.
+                # Also reports a failure if all cases of a program passed, but the program failed
+                # afterward, for example because of a leak report.
                 if ran_wrong and total[1] == 0:
                     total[1] += 1
             elif ran_wrong:

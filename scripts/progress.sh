@@ -1,6 +1,6 @@
-# scripts/setup.sh sources this file, which shows the progress of each step. In a terminal, a step
-# is one line that updates. In a log, a step adds a line every $progress_log_every seconds. The
-# output of the tools goes to $progress_log. If a step fails, the end of that file is shown.
+# scripts/setup.sh sources this file, which shows the progress of each step. In a terminal, it
+# updates one line for each step. In a log, it adds a line every $progress_log_every seconds. The
+# output of the tools goes to $progress_log. If a step fails, it shows the end of that file.
 # shellcheck shell=bash
 
 progress_log=$PWD/build/setup.log
@@ -8,7 +8,7 @@ progress_log_every=30  # seconds between two lines of a log
 progress_steps=0 progress_step=0 progress_name='' progress_begun=0 progress_shown=''
 if [ -t 2 ] && [ "${TERM:-dumb}" != dumb ]; then progress_terminal=1; else progress_terminal=; fi
 
-# duration SECONDS: prints "40 s", "3 min".
+# duration SECONDS: prints a duration such as "40 s" or "3 min".
 duration() {
   if [ "$1" -lt 90 ]; then echo "$1 s"; else echo "$((($1 + 30) / 60)) min"; fi
 }
@@ -90,8 +90,8 @@ weigh_units() {
 
 # show_ninja_progress WEIGHT MILLISECONDS: reads Ninja's output with NINJA_STATUS='[%f/%t] '. WEIGHT
 # is the total weight of all units. MILLISECONDS is the usual time for a weight of 1 on this
-# machine. In the estimate of the remaining time, this usual time counts as much as the measured
-# time of a fifth of the units.
+# machine. In the estimate of the remaining time, this usual time has the same weight as the
+# measured time of a fifth of the units.
 show_ninja_progress() {
   local weight=$1 unit_ms=$2 line partial='' finished=0 total=0 done_weight=0 begun=$SECONDS known left code
   while true; do

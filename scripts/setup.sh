@@ -67,7 +67,8 @@ installable_conflicting() {
   else echo libraptor2-0; fi
 }
 
-# Any version of Node from 18 is suitable. Debian's is installed only if the machine has no Node.
+# Any version of Node from 18 is suitable. Debian's Node is installed only if the machine
+# has no Node.
 node_packages() {
   if ! command -v node >/dev/null || ! command -v npm >/dev/null; then printf '%s\n' nodejs npm; fi
 }
@@ -116,15 +117,15 @@ setup_conflicting() {
 # The tests run nginx in front of the server. An installed nginx would start a server and use port
 # 80.
 setup_nginx() {
-  PATH=$PATH:/usr/sbin command -v nginx >/dev/null || unpack_beside nginx usr/sbin/nginx "installed, it would start a server of its own"
+  PATH=$PATH:/usr/sbin command -v nginx >/dev/null || unpack_beside nginx usr/sbin/nginx "if it were installed, it would start a server"
 }
 
-# The programs of examples/cluster. Installed, etcd and Patroni would start services of the machine.
-# Patroni needs some packages of Python, which are unpacked if they are not installed.
+# The programs of examples/cluster. They are not installed, because the packages of etcd and Patroni
+# start services. Patroni needs some Python packages, which are unpacked if they are not installed.
 python_of_patroni=(python3-cdiff python3-click python3-colorama python3-dateutil python3-dnspython python3-etcd python3-pkg-resources
   python3-prettytable python3-psutil python3-psycopg2 python3-six python3-urllib3 python3-wcwidth python3-yaml)
 setup_cluster() {
-  local package why="installed, it would start a service"
+  local package why="if it were installed, it would start a service"
   setup_nginx
   unpack_beside etcd-server usr/bin/etcd "$why"
   unpack_beside patroni usr/bin/patroni "$why"
@@ -134,8 +135,8 @@ setup_cluster() {
 }
 
 # The next major version of PostgreSQL, from Debian 13, for the test of `strata upgrade-database`. It
-# is unpacked with the libraries of Debian 13 that it needs, because it does not run with those of
-# Debian 12. The programs are in build/deps/debian13/usr/lib/postgresql/17/bin.
+# is unpacked with the libraries of Debian 13 that it needs, because it does not run with the
+# libraries of Debian 12. The programs are in build/deps/debian13/usr/lib/postgresql/17/bin.
 newer_postgresql=(postgresql-17 postgresql-client-17 libpq5 libc6 libgcc-s1 libstdc++6 libicu76 libssl3t64 libldap2 libsasl2-2
   libxml2 libxslt1.1 liblzma5 liblz4-1 libzstd1 zlib1g libpam0g libaudit1 libcap-ng0 libcap2 libsystemd0 libselinux1 libpcre2-8-0
   libgssapi-krb5-2 libkrb5-3 libk5crypto3 libkrb5support0 libcom-err2 libkeyutils1 libreadline8t64 libtinfo6 libuuid1 libxxhash0)
@@ -147,7 +148,7 @@ setup_newer_postgresql() {
   rm -rf "$folder" "$apt"
   mkdir -p "$folder" "$apt"/{lists,cache/archives}/partial
   echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian trixie main" >"$apt/sources.list"
-  # Separate lists, so that the machine never installs a package of Debian 13.
+  # Uses separate package lists, so that the machine never installs a package of Debian 13.
   options=(-qq -o "Dir::Etc::sourcelist=$apt/sources.list" -o Dir::Etc::sourceparts=/dev/null -o "Dir::State::lists=$apt/lists"
     -o "Dir::Cache=$apt/cache" -o APT::Sandbox::User=root)
   in_step "reading what Debian 13 has" apt-get "${options[@]}" update || fail_step "The lists of packages could not be read."
@@ -178,8 +179,8 @@ END
   chmod 755 "$1"/bin/*
 }
 
-# The S3 server of the tests is OpenStack Swift (tests/e2e/s3). Only the packages that it imports are
-# unpacked, because it depends on twice as many.
+# The S3 server of the tests is OpenStack Swift (tests/e2e/s3). Its package depends on
+# twice as many packages as Swift imports. Therefore, only the imported packages are unpacked.
 python_of_swift=(liberasurecode1 libxml2 libxslt1.1 python3-certifi python3-cffi-backend python3-chardet python3-charset-normalizer
   python3-cryptography python3-dnspython python3-eventlet python3-greenlet python3-idna python3-lxml python3-netifaces python3-openssl
   python3-paste python3-pastedeploy python3-pastedeploy-tpl python3-pkg-resources python3-pyeclib python3-requests python3-six
@@ -208,7 +209,7 @@ write_stamp() {
   echo "$2" >"build/stamps/$1"
 }
 
-# The source of the page is web-client. The source of its guide is docs, which is built into
+# The source of the page is web-client. The source of its guide is docs. The built guide is in
 # web-client/dist/guide, where the server finds it.
 modules_stamp() { printf '%s\n' "$1/package.json" "$1/package-lock.json" | stamp_of; }
 modules_are_current() { [ -d "$1/node_modules" ] && is_current "${1//\//-}-modules" "$(modules_stamp "$1")"; }

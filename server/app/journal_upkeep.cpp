@@ -82,8 +82,8 @@ bool JournalUpkeep::pause_between_steps() {
   return !stops;
 }
 
-// The journal is correct without a merge, so the log has only the first of several failures. A room
-// that has closed, or an undo at the same time, is no failure.
+// Logs only the first of several failures, because the journal is correct without a merge. Ignores
+// the errors of a room that has closed, and of an undo at the same time.
 void JournalUpkeep::report(const Error& problem) {
   if (problem.code == ErrorCode::moved || problem.code == ErrorCode::conflict) return;
   if (std::exchange(failed_, true)) return;

@@ -16,8 +16,8 @@ namespace strata::app {
 // that painting does not become slower. A step that fails is repeated later.
 class JournalUpkeep {
  public:
-  // Merges strokes that ended before `merge_after`. With 0 it does nothing. `store` and `rooms`
-  // must outlive it.
+  // Merges strokes that ended longer than `merge_after` ago. Does nothing if `merge_after` is 0.
+  // `store` and `rooms` must outlive the object.
   JournalUpkeep(store::Store& store, room::Rooms& rooms, std::chrono::seconds merge_after);
   ~JournalUpkeep() { stop(); }
   void stop();  // waits for the current step
@@ -25,7 +25,7 @@ class JournalUpkeep {
  private:
   using Clock = std::chrono::steady_clock;
   void run();
-  // Returns whether more edits can be merged at once.
+  // Returns whether more edits can be merged immediately.
   bool merge_all();
   bool merge(const room::Rooms::Claim& claim);
   bool pause_between_steps();  // returns false if the server stops
@@ -35,7 +35,7 @@ class JournalUpkeep {
   const std::chrono::seconds merge_after_;
   store::JournalMerger merger_;
   Clock::time_point step_began_;
-  bool failed_ = false;  // the last merge failed, and the log has its reason
+  bool failed_ = false;  // the last merge failed, and the log contains the reason
   std::mutex mutex_;
   std::condition_variable wake_;
   bool stopping_ = false;

@@ -16,7 +16,7 @@ namespace strata::app {
 class TemplateRegistry {
  public:
   // Refuses (500) an invalid Template, invalid lists of terms, and columns and layers of missing
-  // tables. The error contains the name of the file. An empty path gives no templates.
+  // tables. The error contains the name of the file. Returns no templates for an empty path.
   static Result<TemplateRegistry> load(const std::filesystem::path& folder);
 
   const std::vector<protocol::Template>& all() const { return templates_; }  // sorted by name

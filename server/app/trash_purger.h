@@ -18,7 +18,7 @@ namespace strata::app {
 class TrashPurger {
  public:
   // `trash`, `audit` and `files` must outlive it. If `keep_audit` is 0, the audit log keeps all
-  // rows. `keep_files` is the time that a file remains after nothing uses it.
+  // rows. `keep_files` is the time for which an unused file is kept.
   TrashPurger(store::Trash& trash, std::chrono::days keep, store::Audit& audit,
               std::chrono::days keep_audit, store::Files& files, std::chrono::days keep_files);
   ~TrashPurger() { stop(); }

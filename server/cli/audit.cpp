@@ -49,7 +49,7 @@ Result<void> print_rows(store::Store& store, const AuditOptions& options) {
     for (const store::AuditRow& row : rows) std::cout << net::json_line(row);
     if (!std::cout.flush())
       return fail(ErrorCode::storage_full, "Cannot write",
-                  "The output could not be written. Check the space of the disk.");
+                  "The output could not be written. Check the free disk space.");
     if (rows.size() < kRowsAtOnce) return {};
     query.before = rows.back().id;
   }
@@ -61,7 +61,7 @@ Command add_audit(CLI::App& app) {
   auto* command = app.add_subcommand("audit", "Print the audit log as JSON lines, newest first");
   auto options = std::make_shared<AuditOptions>();
   add_data_options(*command, options->data);
-  command->add_option("--from", options->from, "Only rows from this time (RFC 3339) or day on")
+  command->add_option("--from", options->from, "Only rows at or after this time (RFC 3339) or day")
       ->check(check_time);
   command->add_option("--to", options->to, "Only rows before this time (RFC 3339) or day")
       ->check(check_time);

@@ -80,7 +80,7 @@ int backup(const BackupOptions& options) {
 }
 
 // Restores to a temporary folder first. An interrupted restore then leaves no incomplete database
-// that a server would start with.
+// that a server could start with.
 Result<void> restore_into_folder(const BackupOptions& options, const store::BackupFacts& facts,
                                  Progress& progress) {
   const fs::path data = fs::absolute(options.data.data), place = data / "postgres",

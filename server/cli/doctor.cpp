@@ -99,7 +99,7 @@ void check_schema(Report& report, const store::DatabaseState& state) {
     report.bad("Schema", versions + ", and programs need " + std::to_string(state.readable_from),
                "The database is newer. " + store::newer_version_advice(state.applied_by));
   else if (state.schema_version > state.known_version)
-    report.warn("Schema", versions + ", which can use it",
+    report.warn("Schema", versions + ", and can use the database",
                 "Another node has a newer version of Strata: install it for this node, too.");
   else if (state.schema_version == 0)
     report.good("Schema", "none: the first start creates it");
@@ -108,7 +108,7 @@ void check_schema(Report& report, const store::DatabaseState& state) {
         "Schema",
         versions + ": the next start updates it; running nodes of the older version " +
             (state.readable_after_update <= state.schema_version ? "can continue"
-                                                                 : "must be stopped before"));
+                                                                 : "must be stopped first"));
   else
     report.good("Schema", "version " + std::to_string(state.schema_version));
 }
@@ -131,7 +131,7 @@ void check_archive(Report& report, const std::string& dsn) {
   if (state->failing)
     report.bad("Archive", "PostgreSQL cannot write to it, " + last,
                "Check the free space and the permissions of the folder of --archive. The end of "
-               "postgres/postgres.log in the data folder has the reason.");
+               "postgres/postgres.log in the data folder shows the reason.");
   else
     report.good("Archive", last);
 }

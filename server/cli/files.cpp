@@ -99,13 +99,13 @@ Command add_files(CLI::App& app) {
     return command;
   };
   add("show", "Print how many files are in the database and outside", print_facts);
-  add("check", "Read all files outside, and list those that are missing, changed or superfluous",
+  add("check", "Read all files outside, and list missing, changed and superfluous files",
       check_files);
   add("move", "Move all files out of the database, or back into it", move_files)
       ->add_option("--to", options->to, "files or database")
       ->check(CLI::IsMember({"files", "database"}))
       ->capture_default_str();
-  add("adopt", "Let a restored copy of the database delete unused files, instead of the original",
+  add("adopt", "Let a restored copy of the database, instead of the original, delete unused files",
       adopt_files);
   return choosing<FileOptions>(parent, options, std::move(works));
 }

@@ -29,7 +29,7 @@ Result<std::string> import_locally(store::Store& store, const jobs::ImportReques
 }
 
 // Returns one list of files per model. A list contains the mesh and the files to which it refers.
-// All other files belong to the mesh or archive if the command names only one.
+// If the command names only one mesh or archive, all other files belong to it.
 Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
     const std::vector<std::string>& paths) {
   std::vector<std::vector<jobs::ImportFile>> scans;
@@ -124,7 +124,7 @@ Command add_import(CLI::App& app) {
   command
       ->add_option("--server", options->server, "Import into this running server: http://host:port")
       ->envname("STRATA_SERVER");
-  command->add_option("--token", options->token, "Token for the server of --server")
+  command->add_option("--token", options->token, "Token for the server that --server names")
       ->envname("STRATA_OWNER_TOKEN");
   return [options] { return run(*options); };
 }

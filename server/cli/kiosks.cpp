@@ -65,7 +65,7 @@ Command add_kiosk(CLI::App& app) {
   made->add_option("tour", options->tour, "MODEL/TOUR, by slug or id")->required();
   made->add_option("--name", options->name, "Name of the screen, for example its location")
       ->required();
-  made->add_option("--days", options->days, "Days until it expires (default: never)")
+  made->add_option("--days", options->days, "Days until the link expires (default: never)")
       ->check(CLI::Range(1, 3650));
   made->add_option("--url", options->url, "Address of the server, for the link")
       ->capture_default_str();

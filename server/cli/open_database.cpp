@@ -10,7 +10,7 @@ namespace strata::cli {
 
 void add_data_options(CLI::App& command, DataOptions& options) {
   command
-      .add_option("--data", options.data, "Folder of the private database and of running uploads")
+      .add_option("--data", options.data, "Folder of the private database and uploads in progress")
       ->envname("STRATA_DATA")
       ->capture_default_str();
   command

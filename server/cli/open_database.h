@@ -27,7 +27,7 @@ struct OpenDatabase {
   ~OpenDatabase() { store.reset(); }
 };
 Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options);
-// Opens the database like `open_database`. If a server is running on the data, connects to its
+// Opens the database like `open_database`. If a server is using the data folder, connects to its
 // database.
 Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& options);
 

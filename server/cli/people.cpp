@@ -239,7 +239,7 @@ Command add_user(CLI::App& app) {
   add_password(*made, options);
   add_subcommand(*parent, options, "list", "List all accounts")
       ->add_option("--project", options->project,
-                   "Only accounts with a role in this project, with that role");
+                   "Only accounts with a role in this project; shows this role");
   works["list"] = list_people;
   auto* role = add_named("role", "Change the role of an account", changing(set_role));
   role->add_option("role", options->role,
@@ -279,7 +279,7 @@ Command add_token(CLI::App& app) {
   made->add_option("name", options->name, "Purpose of the token")->required();
   add_role(*made, options, "Highest role of the token (default: the user's role)");
   made->add_option("--project", options->project, "Limit the token to this project");
-  made->add_option("--days", options->days, "Days until it expires")
+  made->add_option("--days", options->days, "Days until the token expires")
       ->check(CLI::Range(1, 3650))
       ->capture_default_str();
   add_of("list", "List the tokens of a user");

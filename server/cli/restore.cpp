@@ -1,4 +1,4 @@
-// `strata restore --archive`: the site as it was at a moment, from the archive of a server.
+// `strata restore --archive` restores the site as it was at a moment, from a server's archive.
 #include "cli/restore.h"
 
 #include <iostream>

@@ -16,12 +16,12 @@ struct ArchiveRestore {
 // Restores a moment from an archive, and reports the result. Returns the exit code.
 int restore_from_archive(const ArchiveRestore& options);
 
-// Returns an error if the folder contains anything else than an interrupted restore.
+// Returns an error if the folder contains anything other than an interrupted restore.
 Result<void> check_new_data_folder(const std::filesystem::path& data);
-// The folder in a data folder in which a restore is in progress. The result is then renamed, so an
-// interrupted restore never leaves an incomplete database that a server would start with.
+// The folder in a data folder to which a restore writes. The result is then renamed, so an
+// interrupted restore never leaves an incomplete database that a server could start with.
 inline constexpr const char* kRestoring = "restoring";
-// Moves the restored database to its place.
+// Moves the restored database to the folder `postgres` of the data folder.
 Result<void> finish_restore(const std::filesystem::path& data);
 
 }  // namespace strata::cli

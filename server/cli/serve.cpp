@@ -89,8 +89,8 @@ Result<Address> parse_address(const std::string& text, const std::string& option
 
 Result<Address> parse_listen(const std::string& text) { return parse_address(text, "--listen"); }
 
-// A server that is reachable from other machines needs an account or a provider of accounts,
-// because only accounts protect it.
+// Refuses an address that other machines can reach, unless an administrator can sign in or a
+// provider of OpenID Connect is configured.
 Result<void> check_reach(store::Store& store, const Address& address, bool has_tls,
                          bool has_passwords, bool has_provider) {
   if (is_loopback(address.host)) return {};
@@ -116,8 +116,8 @@ Result<std::vector<sign_on::Provider>> read_providers(const ServeOptions& option
   if (!options.oidc_config.empty()) return sign_on::read_config(options.oidc_config);
   if (options.local_accounts == "on") return std::vector<sign_on::Provider>();
   return fail(ErrorCode::invalid, "Nobody could sign in",
-              "Without local accounts, the server needs a provider of accounts. Name its "
-              "configuration with --oidc-config.",
+              "Without local accounts, the server needs an OpenID Connect provider. Specify "
+              "its configuration with --oidc-config.",
               "--local-accounts");
 }
 
@@ -135,7 +135,7 @@ Result<store::SqlListen> parse_sql_listen(const std::string& text) {
   return store::SqlListen{address.host, address.port};
 }
 
-// For CLI11. Text that is not an address is reported as wrong usage.
+// For CLI11. Returns the error if the text is not an address. Ignores all other errors.
 template <class Parse>
 std::string usage_of(Parse parse, const std::string& text) {
   const auto address = parse(text);
@@ -295,12 +295,12 @@ int run(ServeOptions options) {
     if (!owns) return report(owns.error());
     if (!*owns)
       log::warning(
-          "this database is a copy of the one that the files belong to, so this server deletes no "
-          "files. To make it the owner: strata files adopt");
+          "this database is a copy, and the original owns the files, so this server deletes no "
+          "files. To make the copy the owner: strata files adopt");
   }
   auto orphans = store.attachments().drop_orphans();
   if (!orphans) return report(orphans.error());
-  if (*orphans > 0) log::info("dropped " + std::to_string(*orphans) + " files that nothing uses");
+  if (*orphans > 0) log::info("deleted " + std::to_string(*orphans) + " unused files");
 
   render::RendererOptions render_options;
   render_options.shader_dir = dirs.shaders.string();
@@ -396,7 +396,7 @@ Command add_serve(CLI::App& app) {
   add_files_options(*command, options->data);
   command
       ->add_option("--listen", options->listen,
-                   "Address of the server, HOST:PORT; port 0 takes a free port")
+                   "Address of the server, HOST:PORT; port 0 selects a free port")
       ->envname("STRATA_LISTEN")
       ->check([](const std::string& text) { return usage_of(parse_listen, text); })
       ->capture_default_str();
@@ -410,7 +410,7 @@ Command add_serve(CLI::App& app) {
                    "HTTP or HTTPS address of this server, if several servers use the same "
                    "--database, for example https://strata.example.org/node/a")
       ->envname("STRATA_NODE_URL")
-      ->needs(command->get_option("--database"))  // the nodes of a site share it
+      ->needs(command->get_option("--database"))  // the nodes of a site share a database
       ->check([](const std::string& text) { return usage_of(store::check_node_url, text); });
   command
       ->add_option("--origin", options->origins,
@@ -466,7 +466,7 @@ Command add_serve(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--file-days", options->file_days,
-                   "Days for which a file outside the database remains after nothing uses it")
+                   "Days for which the server keeps an unused file outside the database")
       ->envname("STRATA_FILE_DAYS")
       ->check(CLI::Range(1, kMaxFileDays))
       ->capture_default_str();

@@ -10,7 +10,7 @@
 #include "cli/commands.h"
 #include "cli/open_database.h"
 
-// Commands with subcommands that use the database, even while a server is running on it. `Options`
+// Commands with subcommands that use the database, even while a server is using it. `Options`
 // must have the member `data` with DataOptions.
 namespace strata::cli {
 

@@ -193,8 +193,8 @@ Result<void> write_support_bundle(const DataOptions& data, const SupportOptions&
     add_logs(bundle, logs, people);
   } else {
     bundle.leave_out("logs",
-                     "without the database, the names of people in them are unknown and cannot be "
-                     "replaced");
+                     "without the database, the names of people are unknown and cannot be replaced "
+                     "in the logs");
   }
   add_server(bundle, options.listen);
   bundle.add_manifest();

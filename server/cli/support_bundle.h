@@ -19,9 +19,9 @@ struct SupportOptions {
 // Writes a zip file with the facts that explain most problems of an installation, as text and JSON.
 // `checks` is the report of the doctor, and `graphics` contains its findings about OpenGL.
 //
-// The names of people are replaced by pseudonyms. If the database cannot be read, they are unknown,
-// so the bundle contains no logs then. Finally, the bundle is searched for the secrets of the
-// installation. If it contains one, no file is written (`conflict`).
+// The names of people are replaced by pseudonyms. If the database cannot be read, the names are
+// unknown, so the bundle contains no logs. Finally, the bundle is searched for the secrets of the
+// installation. If the bundle contains a secret, no file is written (`conflict`).
 Result<void> write_support_bundle(const DataOptions& data, const SupportOptions& options,
                                   const std::string& checks, const nlohmann::json& graphics);
 

@@ -41,7 +41,7 @@ nlohmann::json disk(const std::filesystem::path& folder) {
   return {{"bytes", space.capacity}, {"free_bytes", space.available}};
 }
 
-// Returns the value for the bundle. The values of these variables are secrets or contain them.
+// Returns the value of a variable for the bundle, without the secrets in the value.
 std::string public_value(const std::string& name, const std::string& value) {
   if (value.empty()) return value;
   if (name == "STRATA_DATABASE") return store::without_passwords(value).text;
@@ -78,7 +78,7 @@ std::optional<std::string> get(const std::string& url) {
   curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT, kTimeout_s);
   curl_easy_setopt(curl.get(), CURLOPT_NOPROXY, "*");
   curl_easy_setopt(curl.get(), CURLOPT_NOSIGNAL, 1L);
-  // The certificate names another host. There is no network in between.
+  // The certificate names another host. No check is needed, because the server is on this machine.
   curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYPEER, 0L);
   curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYHOST, 0L);
   curl_easy_setopt(curl.get(), CURLOPT_WRITEFUNCTION, &collect);
@@ -86,7 +86,7 @@ std::optional<std::string> get(const std::string& url) {
   long status = 0;
   if (curl_easy_perform(curl.get()) != CURLE_OK) return std::nullopt;
   curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &status);
-  // 503 is an answer of /readyz.
+  // /readyz returns 503 if the server is not ready.
   if (status != 200 && status != 503) return std::nullopt;
   return body;
 }
@@ -110,7 +110,7 @@ nlohmann::json machine_facts(const std::filesystem::path& data) {
         facts["memory"][name] = trimmed(std::string_view(line).substr(line.find(':') + 1));
   const std::filesystem::path folder = std::filesystem::exists(data) ? data : ".";
   facts["disks"] = {{"data", disk(folder)}, {"temporary", disk("/tmp")}, {"root", disk("/")}};
-  // Files of control groups, version 2. Their text is "max" without a limit.
+  // Files of control groups, version 2. Without a limit, the text is "max".
   for (const char* limit : {"memory.max", "memory.high", "cpu.max", "pids.max"})
     facts["container"][limit] = first_line(std::filesystem::path("/sys/fs/cgroup") / limit);
   facts["container"]["docker"] = std::filesystem::exists("/.dockerenv");

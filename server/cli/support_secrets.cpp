@@ -29,7 +29,7 @@ bool is_whole_word(std::string_view text, std::size_t at, std::size_t size) {
          (at + size >= text.size() || !is_word_char(text[at + size]));
 }
 
-// Calls `visit(at, size)` for each longest run of characters of a token.
+// Calls `visit(at, size)` for each longest run of token characters.
 template <class Visit>
 void for_each_run(std::string_view text, Visit visit) {
   for (std::size_t at = 0; at < text.size();) {
@@ -40,7 +40,7 @@ void for_each_run(std::string_view text, Visit visit) {
   }
 }
 
-// A token may be next to other characters of tokens, so every part of a run is tried.
+// A run can be longer than the token that it contains, so every part of the run is tried.
 bool has_hash_of(const std::unordered_set<std::string>& hashes, std::string_view run) {
   for (std::size_t at = 0; at + kTokenLength <= run.size(); ++at) {
     const Sha256 hash = sha256(run.substr(at, kTokenLength));
@@ -60,7 +60,7 @@ bool has(std::string_view text, std::string_view secret) {
 
 void KnownSecrets::add(std::string what, std::string text) {
   if (text.empty()) return;
-  // JSON writes some characters in another way.
+  // JSON escapes some characters.
   const std::string json =
       nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   if (const auto inner = json.substr(1, json.size() - 2); inner != text)
@@ -105,7 +105,7 @@ std::string redacted(std::string_view text) {
       {std::regex(R"re(\b(DETAIL|STATEMENT|CONTEXT|QUERY):  .*)re"), "$1:  [left out]"},
       {std::regex(R"re(^\t.*)re"), "\t[left out]"},
   };
-  // Processes one line at a time: std::regex is recursive, and logs have a million characters.
+  // Processes one line at a time, because std::regex is recursive and logs can be very long.
   std::string result;
   for (std::size_t at = 0; at < without_tokens.size();) {
     const auto end = std::min(without_tokens.find('\n', at), without_tokens.size());
@@ -128,7 +128,7 @@ Pseudonyms::Pseudonyms(const std::vector<std::string>& names) {
     if (lower.empty() || lower == "owner") continue;
     pseudonyms_.emplace_back(lower, "person-" + std::to_string(++number));
   }
-  // A full name may contain a user name.
+  // Longer names come first, because a full name may contain a user name.
   std::ranges::stable_sort(pseudonyms_, std::greater<>(),
                            [](const auto& entry) { return entry.first.size(); });
 }

@@ -20,20 +20,20 @@ struct KnownSecrets {
 
   // Ignores an empty text.
   void add(std::string what, std::string text);
-  // Returns the description of the first secret in the text. A short secret counts only as a word.
+  // Returns the description of the first secret in the text. Finds short secrets only as words.
   std::optional<std::string> find_in(std::string_view text) const;
 };
 
-// Replaces texts with the form of a secret: tokens, links to sign in, links of kiosks, passwords in
+// Replaces texts that look like secrets: tokens, links to sign in, links of kiosks, passwords in
 // addresses and in connection strings.
 std::string redacted(std::string_view text);
 
-// Replaces names of people by pseudonyms, the same name always by the same pseudonym.
+// Replaces names of people by pseudonyms. Each name always has the same pseudonym.
 class Pseudonyms {
  public:
   // Names of the server's own accounts, such as owner, are kept.
   explicit Pseudonyms(const std::vector<std::string>& names);
-  // Replaces whole words only, in upper and lower case. Also replaces the folders of users.
+  // Replaces only whole words, and ignores case. Also replaces the folders of users.
   std::string replaced_in(std::string_view text) const;
 
  private:

@@ -66,7 +66,7 @@ const char* way(Method method) {
   return "";
 }
 
-// A rough estimate. A rehearsal measures the time.
+// Returns a rough estimate. A rehearsal measures the actual time.
 const char* expected_time(const store::UpgradePlan& plan) {
   const std::uintmax_t bytes_per_s = plan.method == Method::dump    ? 5'000'000
                                      : plan.method == Method::clone ? 100'000'000
@@ -124,7 +124,7 @@ int upgrade(const UpgradeOptions& options) {
   const auto plan = store::plan_upgrade(options.data.data, options.dump);
   if (!plan) return report(plan.error());
   if (plan->to == plan->from) {
-    std::cout << "nothing to do: the database is of " << version(plan->from)
+    std::cout << "nothing to do: the database uses " << version(plan->from)
               << ", and no newer version is installed" << std::endl;
     return 0;
   }
@@ -140,7 +140,7 @@ int upgrade(const UpgradeOptions& options) {
   if (!done) {
     const int code = report(done.error());
     std::cerr << "The site has not changed, and the server can continue with "
-              << version(plan->from) << ". More about a failed program is in "
+              << version(plan->from) << ". The output of the programs is in "
               << (plan->cluster() / "upgrade.log").string() << "." << std::endl;
     return code;
   }
@@ -151,8 +151,8 @@ int upgrade(const UpgradeOptions& options) {
     return 0;
   }
   const fs::path aside = plan->data / ("postgres-" + std::to_string(plan->to));
-  std::cout << "the database is now of " << version(plan->to) << "; you can start the server"
-            << "\nthe old database is whole; to go back, stop the server, and run:\n  mv '"
+  std::cout << "the database now uses " << version(plan->to) << "; you can start the server"
+            << "\nthe old database is still complete; to go back, stop the server, and run:\n  mv '"
             << plan->cluster().string() << "' '" << aside.string() << "' && mv '"
             << plan->fallback.string() << "' '" << plan->cluster().string()
             << "'\nchanges after the upgrade are then lost; delete " << plan->fallback.string()
@@ -165,7 +165,7 @@ int upgrade(const UpgradeOptions& options) {
 Command add_upgrade_database(CLI::App& app) {
   auto* command = app.add_subcommand(
       "upgrade-database",
-      "Show how to change the private database to a newer PostgreSQL, rehearse it, or do it");
+      "Show how to change the private database to a newer PostgreSQL, rehearse it, or apply it");
   auto options = std::make_shared<UpgradeOptions>();
   add_data_options(*command, options->data);
   auto* rehearse = command->add_flag(

@@ -29,8 +29,8 @@ Sha256 sha256(std::span<const std::uint8_t> bytes);
 Sha256 sha256(std::string_view text);
 std::string sha256_hex(std::string_view text);
 
-// Returns a UUID (version 8, from a SHA-256 hash) that depends only on the text. It turns an
-// Idempotency-Key into the id of an edit.
+// Returns a UUID (version 8, from a SHA-256 hash) that depends only on the text. Used to convert an
+// Idempotency-Key to the id of an edit.
 Uuid uuid_of_text(std::string_view text);
 
 }  // namespace strata

@@ -51,7 +51,7 @@ std::optional<ErrorCode> error_code_named(std::string_view name_of_it) {
 Error moved_to(std::string location) {
   Error error{ErrorCode::moved,
               "Model moved",
-              "Another node of this site has the model now. Repeat the request at its address.",
+              "Another node of this site owns the model now. Repeat the request at its address.",
               {}};
   error.location = std::move(location);
   return error;

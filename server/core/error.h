@@ -38,7 +38,7 @@ enum class ErrorCode {
   too_many_requests,    // the caller sent more requests than the server allows
   head_too_large,       // the head of the request is too long
   cancelled,            // the caller canceled the request
-  moved,                // another node of the site has the model
+  moved,                // another node of the site owns the model
   // Failures of the server. The same request may succeed later.
   internal,         // an error in the program, or damaged data
   damaged,          // a stored file is missing, or its content has changed
@@ -73,8 +73,8 @@ struct Error {
   std::size_t length = 0;
   std::vector<std::string> suggestions{};
   std::string_view reason{};
-  // For `moved`: the address of the node that has the model. Empty if it is not known; then the
-  // request can be repeated at the address of the site.
+  // For `moved`: the address of the node that owns the model. Empty if this node is unknown. The
+  // request can then be repeated at the address of the site.
   std::string location{};
 };
 
@@ -87,7 +87,7 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string title, std::string
   return tl::unexpected<Error>(Error{code, std::move(title), std::move(detail), std::move(field)});
 }
 
-// The error for a model that another node of the site has (store/nodes/nodes.h).
+// Returns the error for a model that another node of the site owns (store/nodes/nodes.h).
 Error moved_to(std::string location);
 
 namespace detail {

@@ -10,7 +10,7 @@
 namespace strata {
 
 // Counts durations in fixed intervals, for the metrics of the server. All threads may add and read
-// without a lock. A reader may see a sum with a duration that no count contains yet.
+// without a lock. During an addition, a reader may find the duration only in the sum or the count.
 class Histogram {
  public:
   // Upper bounds in seconds, inclusive. A last interval has no upper bound.

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-// The ids of rows. Each kind of row has its own type, so the id of a layer cannot be used for a
-// table. At the input (a reference in an address, a message, a row of the database), numbers are
-// converted to ids. At the output, ids are converted to numbers.
+// Defines one type of id for each kind of row, so the id of a layer cannot be used for a table. The
+// server converts numbers to ids when it reads an address, a message or a row of the database. It
+// converts ids to numbers when it writes them.
 namespace strata {
 
 template <class Kind>

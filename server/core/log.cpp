@@ -20,11 +20,11 @@ constexpr const char* kTextPattern = "%Y-%m-%dT%H:%M:%S.%e %L %v";
 constexpr const char* kJsonPattern = "%v";
 
 struct State {
-  // Read on each call, so atomic numbers replace a lock.
+  // Atomic, because each message reads them without a lock.
   std::array<std::atomic<Level>, kModules> least;
   std::atomic<bool> as_json{false};
   std::mutex mutex;
-  Levels levels;  // as they were set
+  Levels levels;  // the argument of the last set_levels
   State() { spread(); }
   void spread() {
     for (std::size_t i = 0; i < kModules; ++i) least[i] = levels.of(static_cast<Module>(i));
@@ -110,7 +110,7 @@ void write(Level level, std::string_view message, std::span<const Field> fields,
                                                    spdlog::level::warn, spdlog::level::err};
   const auto line = state().as_json ? json_line(level, where.module, message, fields)
                                     : text_line(where.module, message, fields);
-  // The message is data. It is not used as a format string.
+  // The message may contain braces, so it is not used as a format string.
   logger().log(kLevels[static_cast<int>(level)], "{}", line);
 }
 

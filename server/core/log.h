@@ -10,7 +10,7 @@
 
 namespace strata::log {
 
-// The module whose file contains the call. The compiler finds it, so it takes no time at run time.
+// The module whose file contains the call. The compiler determines it, which costs no run time.
 struct Where {
   Module module;
   consteval Where(std::source_location place)  // NOLINT(google-explicit-constructor): a default

@@ -15,7 +15,7 @@ namespace strata {
 // the end.
 class MemoryLedger {
  public:
-  // Bytes that count as used until the destructor runs. Move-only. Must not outlive the ledger.
+  // Bytes that are reserved until the destructor runs. Move-only. Must not outlive the ledger.
   class Share {
    public:
     Share() = default;
@@ -24,7 +24,7 @@ class MemoryLedger {
     ~Share() { reset(); }
     std::uint64_t bytes() const { return bytes_; }
     // Corrects the size after the object has grown or shrunk, even if the total then exceeds the
-    // budget. Not for an empty share.
+    // budget. The share must not be empty.
     void recount(std::uint64_t bytes);
     void reset();
 
@@ -45,8 +45,8 @@ class MemoryLedger {
   bool fits(std::uint64_t bytes) const { return used_bytes_ + bytes <= budget_bytes_; }
   bool exceeded() const { return used_bytes_ > budget_bytes_; }
 
-  // Sets the function that frees one object that is unused or can be made again. It returns false
-  // if no such object exists. `reserve` calls it on its own thread.
+  // Sets the function that frees one object that is unused or can be created again. The function
+  // returns false if no such object exists. It runs on the thread that calls `reserve`.
   void set_evictor(std::function<bool()> evict_one) { evict_one_ = std::move(evict_one); }
   // Returns the error `out_of_memory` if `bytes` do not fit even after eviction. `what` names the
   // use of the bytes in the message.

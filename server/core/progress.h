@@ -34,7 +34,7 @@ class Progress {
     std::lock_guard lock(mutex_);
     return message_;
   }
-  // The id of the job whose progress this is. 0 if the task is not a job. Results store the id.
+  // Returns the id of the job, or 0 if the task is not a job. Results store this id.
   JobId job() const { return job_; }
   void set_job(JobId job) { job_ = job; }  // call before the work begins
 

@@ -42,7 +42,7 @@ std::string to_traceparent(const TraceContext& context);
 // malformed or empty. It always has a new span.
 TraceContext continued_trace(std::string_view sent);
 
-// Returns the trace that this thread works for; zero: no trace. Each line of the log contains it.
+// Returns the trace of this thread's work, or zero without a trace. Each log line contains it.
 const TraceId& current_trace();
 
 // Marks the thread as working for a trace.

@@ -10,7 +10,7 @@
 namespace strata {
 
 // A parsed formula (expression/expression_parser) for a fill, a selection, a filter of records or a
-// computed layer. At each texel or record, it gives a condition, a number, a text or a time.
+// computed layer. Its result at each texel or record is a condition, a number, a text or a time.
 //
 // The missing value of a layer or column is unknown. A result is unknown if it is computed from an
 // unknown value or is not finite (1/0). Conditions have three values, as in SQL. A comparison with
@@ -21,33 +21,33 @@ struct Expression {
     // numbers
     number,          // `number`; NaN if unknown
     layer,           // the value of the layer whose slug is `name`
-    add,             // of two parts, like the next three
+    add,             // takes two parts, like the next three
     subtract,        //
     multiply,        //
     divide,          //
-    negate,          // of one part
-    absolute,        // of one part
-    least,           // of two or more parts
-    greatest,        // of two or more parts
+    negate,          // takes one part
+    absolute,        // takes one part
+    least,           // takes two or more parts
+    greatest,        // takes two or more parts
     choose,          // parts: a condition, the number if it is true, and the number if it is false
-    power,           // of two parts, like the next two
-    remainder,       // of a division towards zero
+    power,           // takes two parts, like the next two
+    remainder,       // the quotient is rounded towards zero
     whole_division,  // the quotient without its fraction
-    square_root,     // of one part, like the next six
+    square_root,     // takes one part, like the next six
     exponential,     //
     natural_log,     //
     decimal_log,     //
     floor,           //
     ceiling,         //
-    round,           // halves away from zero
-    sine,            // of an angle in radians, like the next two
+    round,           // rounds halves away from zero
+    sine,            // takes an angle in radians, like the next two
     cosine,          //
     tangent,         //
-    arc_sine,        // an angle in radians, like the next two
+    arc_sine,        // returns an angle in radians, like the next two
     arc_cosine,      //
     arc_tangent,     //
-    radians,         // of degrees
-    degrees,         // of radians
+    radians,         // converts from degrees
+    degrees,         // converts from radians
     x,               // position of the texel in the world, in model units, like the next two
     y,               //
     z,               //
@@ -60,34 +60,34 @@ struct Expression {
     column,
     // Texts. They also represent times (ISO 8601, EDTF).
     text,          // `text`
-    fold_case,     // of one part
-    fold_accents,  // of one part
+    fold_case,     // takes one part
+    fold_accents,  // takes one part
     keys,          // keys of records; the parts are numbers
     // Conditions.
     truth,          // `number` is 1 or 0
     valid,          // the layer has a value
     known,          // the part is known
-    less,           // of two parts of one type, like the next five
+    less,           // compares two parts of one type, like the next five
     less_equal,     //
     greater,        //
     greater_equal,  //
     equal,          //
     not_equal,      //
-    // Of a text and a pattern: % matches any characters, _ matches one character, and \ precedes a
-    // literal character.
+    // Compares a text with a pattern: % matches any characters, _ matches one character, and a
+    // literal character follows \ (backslash).
     like,
-    all,           // of two or more conditions
-    any,           // of two or more conditions
-    negation,      // of one condition
-    holds,         // of a column of booleans
-    before,        // of two times, like the next six: the first ends before the second begins
+    all,           // takes two or more conditions
+    any,           // takes two or more conditions
+    negation,      // takes one condition
+    holds,         // takes a column of booleans
+    before,        // takes two times, like the next six: the first ends before the second begins
     after,         // the first begins after the second ends
     during,        // the first is within the second
     contains,      // the second is within the first
     intersects,    // the times have a moment in common
     disjoint,      // the times have no moment in common
-    coincides,     // the times begin and end together
-    has_all,       // of a relation and keys, like the next three: has all of the keys
+    coincides,     // the times have the same beginning and end
+    has_all,       // takes a relation and keys, like the next three: the relation has all of them
     has_any,       // has at least one of the keys
     has_only,      // has no other keys
     has_exactly,   // has the keys and no others

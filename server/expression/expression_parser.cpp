@@ -42,8 +42,8 @@ const std::vector<std::string> kJoiningWords{"and", "or", "not", "is", "between"
 constexpr std::array<std::string_view, 11> kUnits{"mm",  "cm", "m",  "km", "um",     "nm",
                                                   "deg", "g",  "kg", "ft", "percent"};
 
-// A recursive descent parser. It keeps the first error and then moves to the end of the text, so
-// every level returns with any intermediate result.
+// A recursive descent parser. It keeps the first error and then moves to the end of the text. Every
+// level then returns, and its result is not used.
 class Parser {
  public:
   Parser(std::string_view text, const std::string& field, Names names)

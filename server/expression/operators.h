@@ -43,10 +43,10 @@ struct Operator {
   std::uint64_t (*compare)(std::span<const double> a, std::span<const double> b) = nullptr;
   std::uint64_t (*compare_with)(std::span<const double> a, double b) = nullptr;
 
-  // The PostgreSQL expression over {a} and {b}. It gives NULL if the operation has no result.
+  // The PostgreSQL expression over {a} and {b}. It returns NULL if the operation has no result.
   const char* sql = nullptr;
-  // For times, which have a first and a last moment. The expression over {a}, {a_end}, {b} and
-  // {b_end}.
+  // The expression for times, over {a}, {a_end}, {b} and {b_end}. A time has a first and a last
+  // moment.
   const char* times_sql = nullptr;
 
   bool is_called(std::string_view text) const {

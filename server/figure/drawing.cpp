@@ -65,8 +65,8 @@ Plane plane_square_to(const glm::dvec3& normal, std::string_view up) {
   const Plane front = front_of(up);
   const glm::dvec3 into = -glm::normalize(normal);
   const double along = glm::dot(into, front.up);
-  // A horizontal surface has no direction for up, so the drawing is a plan or its counterpart from
-  // below.
+  // A horizontal surface has no upward direction, so the drawing is a plan or a corresponding
+  // view from below.
   constexpr double kLying = 0.999;
   const glm::dvec3 preferred_up = std::abs(along) < kLying ? front.up
                                   : along < 0              ? front.into
@@ -110,8 +110,8 @@ double fitting_scale(const glm::dvec2& size, const glm::dvec2& paper_mm, double 
 
 std::vector<Part> parts_of(const Drawing& drawing, int side) {
   const int inches = std::max(1, side / drawing.dpi), step = inches * drawing.dpi;
-  // The margin has whole pixels of both the drawing and the camera, so the pixels of all parts
-  // match.
+  // The margin is a whole number of pixels of the drawing and also of the camera, so the pixels
+  // of all parts match.
   const int common = std::gcd(drawing.dpi, kCameraDpi);
   const int unit_px = drawing.dpi / common * 2, unit_camera = kCameraDpi / common * 2;
   const int units = (kSymbolReach_px + unit_camera - 1) / unit_camera;

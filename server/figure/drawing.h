@@ -68,7 +68,7 @@ constexpr int kCameraDpi = 100;
 // margin contains the surface at the symbol's position, so the server can test if it is hidden.
 struct Part {
   Camera camera;
-  // In pixels, without the margin. Origin at the drawing's top left.
+  // In pixels from the drawing's top left, without the margin.
   int x = 0, y = 0, width = 0, height = 0;
   int margin = 0;  // in pixels, always even
 };

@@ -220,7 +220,7 @@ struct PlacedLegend {
 };
 
 // Places the legend with the smallest height at which no list is split. If that height exceeds
-// `whole`, splits lists, which makes the columns similarly high.
+// `whole`, splits lists, so the columns have similar heights.
 PlacedLegend place_legend(const std::vector<List>& lists, int columns, double whole, double most,
                           const std::string& continued) {
   for (const bool may_break : {false, true})
@@ -337,8 +337,8 @@ std::string scale_text(double scale) {
 }
 
 ScaleBar scale_bar(double scale, double widest_mm) {
-  // The bar is the longest of 1, 2 and 5 times a power of ten that fits, in millimeters in the
-  // world.
+  // The length of the bar is 1, 2 or 5 times a power of ten, in millimeters in the world. The
+  // longest bar that fits is used.
   const double most = widest_mm * scale;
   const double decade = std::pow(10, std::floor(std::log10(most)));
   const int digit = most >= 5 * decade ? 5 : most >= 2 * decade ? 2 : 1;

@@ -9,7 +9,7 @@
 
 namespace strata::figure {
 
-// The layout of a sheet. The drawing gets the area that legend and text leave.
+// The layout of a sheet. The drawing fills the area that the legend and the texts do not use.
 
 enum class Paper { a5, a4, a3 };
 glm::dvec2 paper_mm(Paper paper, bool landscape);
@@ -36,8 +36,8 @@ class SheetLayout {
   int drawing_height() const { return height_; }
   glm::dvec2 drawing_mm() const { return sheet_.drawing.size; }
 
-  // `north` is the direction of north on the paper (y down). It has no value if the north direction
-  // is too steep to the paper. `place_labels` makes the labels.
+  // `north` is the direction of north on the paper (y down). It has no value if the angle between
+  // north and the paper is too large. `place_labels` makes the labels.
   Sheet finish(double scale, const std::optional<glm::dvec2>& north,
                const std::vector<Label>& labels) const;
 

@@ -6,8 +6,8 @@
 namespace strata::figure {
 namespace {
 
-// The factor of letter heights for measuring. Pango rounds to its units, 1024 per point, so large
-// letters reduce the error.
+// Letters are enlarged by this factor for measuring. Pango rounds to its units, 1024 per point, so
+// large letters reduce the error.
 constexpr double kMeasured = 100;
 
 // Makes a context that is used for measuring only.

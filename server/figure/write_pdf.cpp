@@ -27,8 +27,8 @@ Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Documen
   {
     const CairoContext context(cairo_create(page.get()));
     cairo_scale(context.get(), kPoints_per_mm, kPoints_per_mm);
-    // cairo writes the JPEG instead of these pixels and uses only their size. It modifies neither
-    // of them.
+    // cairo writes the JPEG instead of these pixels and uses only their size. It does not modify
+    // the JPEG or the pixels.
     const CairoSurface image(cairo_image_surface_create_for_data(
         const_cast<std::uint8_t*>(drawing.rgba.data()), CAIRO_FORMAT_RGB24, drawing.width,
         drawing.height, 4 * drawing.width));

@@ -6,7 +6,7 @@
 
 namespace strata::gl {
 
-// Marks a position in the command stream. An empty fence counts as passed. Move-only.
+// Marks a position in the command stream. An empty fence is treated as passed. Move-only.
 class Fence {
  public:
   Fence() = default;

@@ -3,9 +3,9 @@
 // thread reads the mark without the mutex and may free the fence. The drawing thread then unlocks
 // the mutex, which writes 0 into freed memory, and a later allocation crashes.
 //
-// If a program defines pthread_mutex_destroy, its function replaces that of the C library, also for
-// libraries that are loaded later. The function below waits until no thread holds the mutex. Then
-// it calls the function of the C library.
+// If a program defines pthread_mutex_destroy, this function replaces the function of the C library,
+// also for libraries that are loaded later. The function below waits until no thread holds the
+// mutex. Then it calls the function of the C library.
 
 #include <dlfcn.h>
 #include <pthread.h>

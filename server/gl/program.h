@@ -10,8 +10,8 @@
 
 namespace strata::gl {
 
-// A linked program from shader files. The extension of a file gives its stage (.vert, .frag,
-// .comp). Move-only.
+// A linked program from shader files. The extension of a file determines its stage (.vert,
+// .frag, .comp). Move-only.
 class Program {
  public:
   Program() = default;

@@ -25,7 +25,7 @@ Result<void> append(const std::filesystem::path& directory, const std::string& f
   for (int number = 1; std::getline(stream, line); ++number) {
     constexpr std::string_view kInclude = "#include \"";
     if (!line.starts_with(kInclude)) {
-      // Each file is included only once. The pragma is for C++.
+      // Removes the pragma, which is for C++. Each file is included only once even without it.
       text += line.starts_with("#pragma once") ? "\n" : line + "\n";
       continue;
     }

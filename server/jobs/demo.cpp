@@ -36,7 +36,7 @@ Layer sherds_layer() {
       {153, 153, 153, 255}, {170, 68, 153, 255}};
   Layer layer;
   layer.name = layer.slug = "pieces";
-  layer.description = "The sherds that the pot was put together from, numbered.";
+  layer.description = "The numbered sherds from which the pot was reassembled.";
   layer.palette = {PaletteMode::categorical, 1, DemoRules::kSherds, {}, {}};
   for (int i = 0; i < DemoRules::kSherds; ++i)
     layer.palette.points.push_back({double(i + 1), kColors[i], "Sherd " + std::to_string(i + 1)});
@@ -48,7 +48,7 @@ Layer sherds_layer() {
 Layer cracks_layer() {
   Layer layer;
   layer.name = layer.slug = "cracks";
-  layer.description = "Cracks, by how far they have opened.";
+  layer.description = "Cracks, classified by their width.";
   layer.palette = {PaletteMode::categorical, DemoRules::hairline, DemoRules::open_crack, {}, {}};
   layer.palette.points = {{DemoRules::hairline, {156, 230, 120, 255}, "Hairline"},
                           {DemoRules::crack, {34, 160, 70, 255}, "Crack"},
@@ -64,7 +64,7 @@ Result<Project> demo_project(store::Store& store) {
   Project fresh;
   fresh.name = "Demo";
   fresh.slug = kProject;
-  fresh.description = "A made-up pot to try things on.";
+  fresh.description = "An invented pot for trying out Strata.";
   return store.projects().create(fresh);
 }
 
@@ -88,7 +88,7 @@ Result<Model> create_pot(store::Store& store, const Project& project, double det
   model.atlas = atlas.report;
   model.default_resolution = kResolution;
   model.creator = kAuthor;
-  model.method = "Made by formula, not scanned";
+  model.method = "Computed from formulas, not scanned";
   progress.begin_stage(0.5, 0.6);
   progress.report(0, "Saving the pot");
   STRATA_TRY(put_geometry(std::move(geometry), progress, fresh));
@@ -158,7 +158,7 @@ store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer
 Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer,
                          const char* rule, std::chrono::system_clock::time_point time,
                          store::JournalEntry entry) {
-  // A room that is open must not write afterwards, because it lacks this entry.
+  // The new epoch prevents writes by a room that is already open and lacks this entry.
   entry.epoch = STRATA_TRY(store.nodes().begin_epoch(model.id));
   const auto last = STRATA_TRY(store.journal().last_sequence(model.id));
   entry.model_id = model.id;

@@ -12,7 +12,7 @@ namespace strata::jobs {
 inline constexpr const char* kDemoProject = "demo";  // slugs of the project and the model
 inline constexpr const char* kDemoModel = "demo-pot";
 
-// Like make_demo in jobs/import_job.h, but with a given time of the fills.
+// Like make_demo in jobs/import_job.h, but the caller sets the time of the fills.
 Result<Model> make_demo_at(store::Store& store, Progress& progress, double detail,
                            std::chrono::system_clock::time_point time);
 

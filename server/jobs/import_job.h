@@ -38,9 +38,9 @@ struct ImportRequest {
 Result<void> check(const ImportRequest& request);
 
 // Imports a model: files → mesh → atlas → geometry → one transaction, which also stores the
-// caller's response. A bad file or a cancellation leaves no data. The memory of textures during the
-// computation of the base color is reserved in `memory` (null: not counted). If it is insufficient,
-// the base color is smaller, and `repairs` reports this.
+// caller's response. Stores no data if a file is bad or the import is canceled. The memory of
+// textures during the computation of the base color is reserved in `memory` (null: not counted). If
+// the memory is insufficient, the base color is smaller, and `repairs` reports this.
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
                            const store::IdempotentResponse<Model>& answer = {},
                            MemoryLedger* memory = nullptr);

@@ -157,7 +157,7 @@ struct JobQueue::Impl {
   std::condition_variable changed;
   std::map<JobId, Job> jobs;  // by id, which is the order of the requests
   std::deque<JobId> waiting;
-  std::size_t coming = 0;  // number of jobs that are being stored, before they wait
+  std::size_t coming = 0;  // number of jobs that are being stored and do not wait yet
   // The first id follows the current time in milliseconds. Therefore new ids are higher than all
   // earlier ids, if there are on average fewer than 1000 jobs per second.
   std::int64_t last_id = std::chrono::duration_cast<std::chrono::milliseconds>(

@@ -51,14 +51,14 @@ struct JobStatus {
 
 // Runs long work on a separate thread, one job at a time, in the order of the requests. Until the
 // queue is destroyed, it keeps the newest 1000 finished jobs, and the files of the newest
-// kFilesKept jobs with a file. Ids are higher than those of all earlier queues, so an old id never
-// refers to a new job.
+// kFilesKept jobs with a file. Ids are higher than the ids of all earlier queues, so an old id
+// never refers to a new job.
 class JobQueue {
  public:
   static constexpr int kFilesKept = 16;
   // With `store`, jobs are kept for store::Jobs::kDaysKept days, also after the queue is destroyed,
-  // but without their files. Unfinished jobs of an earlier queue count as failed. `store` must
-  // outlive the queue. `node` is this server, if the site has several. Blocks.
+  // but without their files. Unfinished jobs of an earlier queue are reported as failed. `store`
+  // must outlive the queue. `node` is this server, if the site has several servers. Blocks.
   explicit JobQueue(store::Jobs* store = nullptr, std::optional<Uuid> node = {});
   ~JobQueue();  // cancels the running job and joins the thread
   using Work = std::function<Result<JobResult>(Progress&)>;
@@ -69,7 +69,7 @@ class JobQueue {
   std::optional<JobStatus> status(JobId id) const;
   std::vector<JobStatus> all() const;  // newest job first
   bool cancel(JobId id);
-  // Returns the number of jobs in each JobState. Only the kept jobs count.
+  // Returns the number of kept jobs in each JobState.
   std::array<std::size_t, 5> counts() const;
 
  private:

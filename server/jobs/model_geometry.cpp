@@ -56,7 +56,7 @@ Result<void> put_geometry(mesh::Geometry geometry, Progress& progress, store::Ne
     model.bounds_min = glm::min(model.bounds_min, position);
     model.bounds_max = glm::max(model.bounds_max, position);
   }
-  // Runs while the coarser copies are made: each of the two uses one core for about as long.
+  // Runs while the coarser copies are made. Each task uses one core and takes about as long.
   auto open_edges =
       std::async(std::launch::async, [&geometry] { return mesh::measure_open_edges(geometry); });
   const auto levels = STRATA_TRY(shaded_levels(geometry, progress));

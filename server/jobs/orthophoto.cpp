@@ -32,8 +32,8 @@ Picture empty_picture(int resolution) {
   return {resolution, resolution, std::vector<std::uint8_t>(4 * side * side)};
 }
 
-// Returns an image of the covered part of the surface. Off the surface the cover is undefined, so
-// the cover of the islands is continued around them, like the colors.
+// Returns an image that is 255 where the surface has a color, and 0 on the rest of the surface.
+// Around the islands, the image continues the values at their rims, as it does for the colors.
 Picture cover_of(const TileMap& colors, const mesh::SurfaceMap& map) {
   Picture cover = empty_picture(map.resolution);
   const int tiles = map.resolution / kTileSize;

@@ -19,7 +19,7 @@ struct ShapeLayer {
   TileMap tiles;
   std::string unit, description;
   Palette palette;
-  nlohmann::json recipe;  // complete, so the same mesh always gives the same texels
+  nlohmann::json recipe;  // complete, so the same mesh always results in the same texels
 };
 
 // Computes the layer of the recipe on the whole surface of the model, as values of `type` at

@@ -19,7 +19,7 @@ inline constexpr std::size_t kSniffedBytes = 64 * 1024;
 std::string sniff_media_type(std::span<const std::uint8_t> head, std::string_view name);
 
 // Returns whether a media type is a raster image, which browsers show but never run. SVG is not
-// one.
+// a raster image.
 bool is_raster_picture(std::string_view media_type);
 
 }  // namespace strata

@@ -10,7 +10,7 @@
 
 namespace strata {
 
-// Reads and writes image files. The format follows from the bytes, never from the name.
+// Reads and writes image files. The bytes determine the format, and the name has no effect.
 // Thread-safe.
 //
 // Supported files:

@@ -23,7 +23,7 @@ namespace {
 
 static_assert(STBI_MAX_DIMENSIONS == kMaxPictureSide);
 
-// Reads a little-endian number of a header. Bytes beyond its end count as 0.
+// Reads a little-endian number of a header. Bytes beyond the end are read as 0.
 std::uint32_t number(std::span<const std::uint8_t> bytes, std::size_t at, int size) {
   std::uint32_t value = 0;
   for (int i = 0; i < size; ++i) {

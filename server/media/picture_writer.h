@@ -10,7 +10,7 @@
 namespace strata {
 
 // Writes an image as a JPEG or PNG file, row by row, top row first. So the whole image is never in
-// memory. The file has the same pixels as that of encode_jpeg or encode_png. For one thread only.
+// memory. The file has the same pixels as a file of encode_jpeg or encode_png. Not thread-safe.
 // Throws std::runtime_error if the library fails.
 class PictureWriter {
  public:

@@ -37,8 +37,8 @@ class ShapeTexture {
   const ShapeBits& bits() const { return bits_; }
   bool is_set(int x, int y) const;
   // Returns the chessboard distance of each cell to the nearest cell of the tool, row by row. 255
-  // means a distance of 255 or more. A line can skip all nearer cells, because they do not belong
-  // to the tool.
+  // means a distance of 255 or more. A search along a line can skip all nearer cells, because they
+  // do not belong to the tool.
   std::span<const std::uint8_t> distances() const { return distances_; }
   // Returns the radius of the largest disc that is inside the tool and shares its center, as a
   // share of the tool's radius: 0…1.

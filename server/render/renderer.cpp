@@ -68,7 +68,7 @@ struct Renderer::Impl {
     return {};
   }
 
-  // Starts a frame, usually a rectangle, whose turn precedes those of all frames in progress.
+  // Starts a frame, usually a rectangle, whose turn precedes all turns of frames in progress.
   std::optional<Job> next_part() {
     std::erase_if(under_way, [](const auto& frame) { return frame.expired(); });
     std::vector<FrameTask::Turn> turns;

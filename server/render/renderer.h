@@ -59,7 +59,7 @@ struct GpuInfo {
 // The result of one stroke batch. Contains only tiles with written texels.
 struct WrittenTile {
   TileAddress address;
-  // Surface and gutter texels under the tool, also those that already had the value.
+  // Surface and gutter texels under the tool, including texels that already had the value.
   TileMask written;
   TileData after;
 };
@@ -169,7 +169,7 @@ struct FrameRequest {
 struct Frame {
   // The area of `pixels`: the whole frame or its changed parts. Empty: nothing changed.
   std::vector<PixelRect> rects;
-  int width = 0, height = 0;         // of the whole frame
+  int width = 0, height = 0;         // size of the whole frame
   std::vector<std::uint8_t> pixels;  // RGBA8, one rectangle after another, top row first
   double render_ms = 0;
   int level = 0;  // level of detail: 0 is the full mesh, 1 the finest coarser copy
@@ -185,11 +185,11 @@ struct ModelGeometry {
 // Owns the GPU: one thread with the EGL context and a bounded queue
 // (docs/developer/architecture/overview.md, "The GPU thread"). All functions are thread-safe and,
 // unless stated otherwise, return without waiting. Callbacks run on the GPU thread and must be
-// short. Edits and layer changes run first, in the order of their calls. Then come frames, and then
-// background work: uploads of models and surface maps, in slices. A request fails with the Error
-// `busy` if the queue is full. Pending requests fail with `unavailable` when the renderer stops,
-// and with `gpu_lost` when the context is lost. After the renderer has stopped, callbacks run on
-// the caller's thread.
+// short. Edits and layer changes run first, in the order of their calls. Frames run next.
+// Background work runs last: uploads of models and surface maps, in slices. A request fails with
+// the Error `busy` if the queue is full. Pending requests fail with `unavailable` when the renderer
+// stops, and with `gpu_lost` when the context is lost. After the renderer has stopped, callbacks
+// run on the caller's thread.
 class Renderer {
  public:
   // Starts the thread and waits for the context. The Error lists the attempts and possible fixes.
@@ -232,7 +232,7 @@ class Renderer {
   void add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done);
   void remove_layer(LayerHandle layer);
   // Replaces whole tiles (fill, undo, import), in order with strokes. Calls `done` when all tiles
-  // are on the GPU. Frames drawn before that may show some of the old tiles.
+  // are on the GPU. Frames drawn earlier may show some old tiles.
   void write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
   void paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done);
 

@@ -25,7 +25,7 @@
 
 namespace strata::room {
 
-// The requests of a caller in domain terms. `net` converts messages into them.
+// The edits that a caller can request. `net` converts messages into them.
 struct StrokeEdit {
   StrokeBatch batch;
   Uuid stroke;
@@ -35,7 +35,7 @@ struct FillEdit {
   bool erase = false;
   std::uint32_t value_bits = 0;
   struct Everywhere {};
-  struct Where {  // evaluated on the layers of the model as they are when the edit starts
+  struct Where {  // evaluated on the state of the layers at the start of the edit
     Expression condition;
   };
   struct Island {  // the connected piece of the surface, across the seams of the atlas
@@ -72,7 +72,7 @@ struct RedoEdit {};
 struct ReviewEdit {  // reviews edits that wait for review, or that were reviewed before
   Decision decision = Decision::accept;
   store::Reviewees which;
-  std::string reason;  // for the authors of the edits
+  std::string reason;  // message to the authors of the edits
 };
 struct RestoreEdit {  // restores the layer as it was after a sequence
   std::int64_t sequence = 0;

@@ -33,7 +33,7 @@ class Listener {
     struct Review {
       Decision decision = Decision::accept;
       std::string reason;
-      std::vector<std::string> authors;  // of the reviewed edits
+      std::vector<std::string> authors;  // authors of the reviewed edits
     };
     std::optional<Review> review{};
   };
@@ -50,8 +50,8 @@ class Listener {
   // address of that node, or empty if it is not known. The last event. Edits without an answer were
   // refused with the code `moved`, so the client must send them again.
   virtual void moved(const std::string& url) = 0;
-  // This node lost its connection to the database, or has it again. Without it, the room still
-  // draws, but refuses edits. Another node may then have newer edits of the model.
+  // This node lost its connection to the database, or connected again. Without the database, the
+  // room still draws, but refuses edits. Another node may then have newer edits of the model.
   virtual void database_reachable(bool reachable) = 0;
   virtual void presence_changed() = 0;
   // Called on the GPU thread, for one view of this participant only. The view cannot be drawn as

@@ -21,10 +21,10 @@ class Listener;
 // The position of a pointer on the surface.
 struct Pointing {
   glm::dvec3 position{0};        // in world coordinates
-  std::optional<double> radius;  // of the current brush, in world units
+  std::optional<double> radius;  // radius of the brush, in world units
 };
 
-// How other participants see a participant.
+// The data of a participant that other participants see.
 struct Portrait {
   std::string full_name{};  // empty if the user has no full name
   std::string color{kNobodysColor};
@@ -71,7 +71,7 @@ class Participants {
   virtual std::unique_ptr<Participant> join(Author who, Portrait portrait, Listener* listener,
                                             stream::SendFrames send) = 0;
   // Returns all participants as one of the sessions receives them. The only camera in the result is
-  // that of its leader.
+  // the camera of this session's leader.
   virtual std::vector<Presence> presence(const Uuid& receiver) const = 0;
 };
 

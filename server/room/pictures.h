@@ -30,7 +30,7 @@ struct PictureRequest {
   // Without `at`, the texels that wait at present are drawn hatched.
   std::map<LayerId, TileMap> provisional{};
   bool on_floor = true;  // draw the model's contact shadow, if the light has one
-  int samples = 1;       // per pixel: render::FrameRequest::samples
+  int samples = 1;       // samples of each pixel (render::FrameRequest::samples)
   // Per band of 2 million pixels: render::FrameRequest::samples_time.
   std::chrono::milliseconds samples_time{0};
   Role seen_by = Role::owner;  // hidden columns affect neither drawing nor colors

@@ -10,7 +10,7 @@ export default {
   testDir: "browser",
   testMatch: "*_test.mjs",
   workers: 1,
-  maxFailures: 1, // cases depend on each other, so after a failure the rest has no meaning
+  maxFailures: 1, // cases depend on each other, so the results after a failure have no meaning
   timeout: 5 * kLong_ms,
   reporter: report ? [["list"], ["junit", { outputFile: `${report}.xml` }]] : "list",
   outputDir: report ? `${report}_failures` : undefined,

@@ -12,7 +12,7 @@
 namespace {
 
 constexpr int kSide = 16;
-constexpr strata::ThumbnailLimits kLimits{512 * 512, 512 * 512};  // larger ones only take longer
+constexpr strata::ThumbnailLimits kLimits{512 * 512, 512 * 512};  // larger images only take longer
 
 void demand(bool holds) {
   if (!holds) std::abort();

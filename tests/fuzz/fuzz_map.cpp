@@ -11,7 +11,7 @@ namespace {
 
 using strata::query::FeatureMap;
 
-constexpr int kMaxSide = 512;  // of images; larger ones only take longer
+constexpr int kMaxSide = 512;  // of images; larger images only take longer
 
 void check(bool good) {
   if (!good) std::abort();

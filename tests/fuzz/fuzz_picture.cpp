@@ -9,7 +9,7 @@
 
 namespace {
 
-constexpr int kMaxSide = 512;  // larger ones only take longer
+constexpr int kMaxSide = 512;  // larger images only take longer
 
 void demand(bool holds) {
   if (!holds) std::abort();

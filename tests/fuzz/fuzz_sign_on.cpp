@@ -1,4 +1,4 @@
-// Fuzzes what OpenID Connect providers and administrators send: ID tokens, sets of keys, and
+// Fuzzes data from OpenID Connect providers and administrators: ID tokens, sets of keys, and
 // configurations. The first byte selects the reader. No input is a valid token, because the private
 // key is not known.
 #include <cstdint>

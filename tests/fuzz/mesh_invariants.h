@@ -9,7 +9,7 @@
 
 namespace strata::test {
 
-// Checks the properties of every mesh that was read. The fuzzer counts a trap as a finding.
+// Checks the properties of every mesh that was read. The fuzzer reports an abort as a finding.
 inline void check_loaded(const mesh::LoadedMesh& loaded) {
   const mesh::TriangleMesh& mesh = loaded.mesh;
   const auto demand = [](bool condition) {

@@ -21,9 +21,9 @@ constexpr double kRoundingDepth = 1e-6;
 constexpr double kRoundingAngle_rad = 5e-4;
 constexpr double kRoundingOfSize = 1e-6;  // at a section plane, relative to the model's diagonal
 
-// Whether the line between two points of a shape's raster passes through a cell of the tool. Tests
-// each row cell by cell, without the distance jumps of the shader. A positive `slack` (in cells)
-// enlarges the shape on all sides; a negative one shrinks it.
+// Returns whether the line between two points of a shape's raster passes through a cell of the
+// tool. Tests each row cell by cell, without the distance jumps of the shader. A positive `slack`
+// (in cells) enlarges the shape on all sides; a negative one shrinks it.
 bool line_meets_shape(const ShapeTexture& shape, const glm::dvec2& a, const glm::dvec2& b,
                       double slack) {
   for (int y = 0; y < kShapeSide; ++y) {
@@ -110,8 +110,8 @@ double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const
   return best;
 }
 
-// Returns by how much the surface in a pixel stays below the largest allowed angle, as the least
-// and the greatest value. The angle is between the ray from the eye and the normal of the plane
+// Returns the largest allowed angle minus the angle of the surface in a pixel, as the lowest and
+// the highest value. The angle is between the ray from the eye and the normal of the plane
 // through the points of the pixel and of two neighbors, in world coordinates. The two values differ
 // if rounding decides which neighbors are used.
 std::pair<double, double> angle_margins(const StrokeBatch& stroke,

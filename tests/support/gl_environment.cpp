@@ -1,6 +1,6 @@
 // This file is linked into every test that needs GL. It loads the driver libraries and never
-// unloads them. LeakSanitizer checks at the end of the process, and a library that is unloaded by
-// then looks like a leak without a name.
+// unloads them. LeakSanitizer checks at the end of the process, and reports leaks of an unloaded
+// library without their function names.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 

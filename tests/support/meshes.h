@@ -37,7 +37,7 @@ struct NamedMesh {
 };
 // NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for it
 inline void PrintTo(const NamedMesh& named, std::ostream* out) { *out << named.name; }
-// Returns all of the above, at sizes that tests can check by brute force.
+// Returns all meshes above, at sizes that tests can check by brute force.
 std::vector<NamedMesh> mesh_classes();
 
 }  // namespace strata::test

@@ -17,7 +17,7 @@ class TokenKey {
   const std::string& kid() const { return kid_; }
   nlohmann::json public_jwk() const;
   std::string public_pem() const;
-  // Signs header.payload. The header is as given, so it can name another algorithm.
+  // Signs header.payload. Does not change the header, which can name another algorithm.
   std::string sign(const nlohmann::json& header, const nlohmann::json& claims) const;
   // Signs with the algorithm and the name of this key.
   std::string sign(const nlohmann::json& claims) const;

@@ -117,7 +117,7 @@ std::vector<int> children_of(int parent) {
 }  // namespace
 
 Hang::Hang(const store::Cluster& cluster) : cluster_(cluster), stopped_{cluster.postmaster_pid()} {
-  ::kill(stopped_.front(), SIGSTOP);  // first, so it starts no new children
+  ::kill(stopped_.front(), SIGSTOP);  // stopped first, so it starts no new processes
   for (const int child : children_of(stopped_.front())) {
     ::kill(child, SIGSTOP);
     stopped_.push_back(child);

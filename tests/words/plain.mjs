@@ -43,8 +43,8 @@ const options = (file, ext) => ({
   rules: [{ ruleId: "plain-english", rule: plainEnglish }],
 });
 
-// Three kinds of files are skipped. The changelog keeps the words of its releases. A migration must
-// not change after it was applied. Generated files follow their source.
+// Three kinds of files are skipped. The changelog keeps the texts of earlier releases. A migration
+// must not change after it was applied. The texts of generated files come from their source.
 const skipped =
   /(^|\/)(node_modules|generated|fixtures|corpus|migrations)\/|\.gen\.ts$|^CHANGELOG\.md$/;
 const files =

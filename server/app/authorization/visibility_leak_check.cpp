@@ -93,7 +93,7 @@ Result<bool> sees_all_of(store::Store& store, Role role, ModelId model_id,
   if (!expression) return false;
   const auto layers = STRATA_TRY(store.layers().of_model(model_id, Role::owner));
   const std::vector<std::string> named = layers_of(*expression);
-  std::map<std::string, Table> seen, all;  // by slug of the layer
+  std::map<std::string, Table> seen, all;  // by layer slug
   for (const Layer& layer : layers) {
     if (std::ranges::find(named, layer.slug) == named.end()) continue;
     if (!sees(role, layer.visibility)) return false;

@@ -33,8 +33,8 @@ using Place = StoryPlaces::Place;
 
 constexpr const char* kLayer = "condition";
 
-// A stroke in an area that the story leaves unpainted and where the wall is intact, so each stroke
-// is visible.
+// A stroke in an area that the story does not paint. The wall is intact there, so the stroke is
+// visible.
 struct RecordedStroke {
   bool by_curator = false;
   const char* term = "";

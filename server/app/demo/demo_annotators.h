@@ -34,7 +34,7 @@ class DemoAnnotators {
   explicit DemoAnnotators(const Services& services) : DemoAnnotators(services, Pace{}) {}
   DemoAnnotators(const Services& services, Pace pace);
   ~DemoAnnotators() { stop(); }
-  // Call it when a user has opened a model, even if it is not the demo's model. Does not wait.
+  // Call it when a user has opened a model. Ignores models other than the demo's. Does not wait.
   void visited(const Model& model);
   void stop();  // waits until all strokes are undone
 

@@ -121,7 +121,7 @@ class Story {
  private:
   Time day(int before) const { return today_ - std::chrono::days(before); }
 
-  // Sets the time of all changes since the last call to this time of the story.
+  // Backdates all changes since the last call. Their new time is this time of the story.
   Result<void> at(Time time) {
     begun_ = STRATA_TRY(store::JournalWriter::date_back(store_, project_, begun_, time));
     return {};
@@ -252,7 +252,7 @@ class Story {
     return to_json(std::vector<SurfaceFeature>{{model_.id, {places_->place(place)}}});
   }
 
-  // Writes a record whose values are keyed by slug of the column. Returns the key of the record.
+  // Writes a record. `values` contains a value for each column slug. Returns the record's key.
   Result<std::int64_t> write(const std::string& table_slug, const std::string& user,
                              const std::map<std::string, nlohmann::json>& values,
                              std::optional<std::int64_t> key = {}) {
@@ -317,7 +317,7 @@ class Story {
                                 {{-88, .53}, {-85, .47}, {-86, .42}, {-81, .37}, {-82, .33}}},
                                {"efflorescence",
                                 "none",
-                                "White crystals, gypsum by the test strip.",
+                                "White crystals. The test strip shows gypsum.",
                                 "salt_3.jpg",
                                 {-90, .065},
                                 2,
@@ -345,7 +345,7 @@ class Story {
                        {{each.place}, each.radius_mm}));
       observations_.push_back(key);
     }
-    // Draws cracks in the record of the term itself.
+    // Stores the lines of a crack in the record of the term.
     STRATA_TRY(write("condition-terms", kDemoConservator,
                      {{"lines", line_of({{-128, .50}, {-123, .44}, {-125, .38}, {-119, .33}})}},
                      keys_.at("hair-crack")));
@@ -376,7 +376,7 @@ class Story {
         comment(kDemoCurator, "@lena.demo Is the flaking still active? It has grown since spring.",
                 {-52, .49}, "condition"));
     const auto soiling = STRATA_TRY(
-        comment(kDemoCurator, "Clean the left side first, dry only.", {-132, .28}, "condition"));
+        comment(kDemoCurator, "Dry-clean the left side first.", {-132, .28}, "condition"));
     STRATA_TRY(at(day(14) + 16h));
     STRATA_TRY(comment(kDemoConservator,
                        "Yes: the edges are fresh. See observation P1. I propose to consolidate.",
@@ -494,7 +494,7 @@ class Story {
   const TemplateRegistry& templates_;
   Progress& progress_;
   const Time today_;
-  Time begun_;  // start of the changes that have no time of the story yet
+  Time begun_;  // start of the changes that are not backdated yet
   Model model_;
   ProjectId project_ = 0;
   const StoryPlaces* places_ = nullptr;
@@ -502,8 +502,8 @@ class Story {
   store::JournalWriter* writer_ = nullptr;
   std::map<std::string, Table> tables_;                  // by slug
   std::map<std::string, Layer> layers_;                  // by slug
-  std::map<std::string, std::int64_t> keys_;             // keys of terms, by code
-  std::map<std::string, StoryBrush::Content> contents_;  // of layers, by slug of the layer
+  std::map<std::string, std::int64_t> keys_;             // keys of terms by code
+  std::map<std::string, StoryBrush::Content> contents_;  // by layer slug
   std::vector<std::int64_t> observations_;
 };
 

@@ -23,8 +23,8 @@ struct DemoStory {
 // Creates the demo project with a story of eight weeks that ends yesterday. Two users map the
 // condition of the pot with terms, draw cracks, take samples with photos, discuss, plan and clean.
 // Some strokes are suggestions that wait for review. There is a saved view for a figure, and a tour
-// with a kiosk link. All times are those of the story, not the time of the call. Idempotent: does
-// not change a project that already contains the story. Requires the template `stone-condition`.
+// with a kiosk link. All stored times are times of the story. Idempotent: does not change a project
+// that already contains the story. Requires the template `stone-condition`.
 // Blocks.
 Result<DemoStory> make_demo_story(store::Store& store, const TemplateRegistry& templates,
                                   Progress& progress, double detail = 1.0);

@@ -30,7 +30,7 @@ store::JournalEntry StoryBrush::paint(const Layer& layer, Content& content, cons
   std::vector<glm::dvec3> path;
   for (const auto& at : stroke.path) path.push_back(places_.place(at) - places_.origin());
   if (path.size() > 1) {
-    // Between two points, the line follows the surface instead of the straight connection.
+    // Between two points, the path follows the surface instead of a straight line.
     path.clear();
     for (const glm::dvec3& point : places_.line(stroke.path))
       path.push_back(point - places_.origin());

@@ -24,7 +24,7 @@ class StoryPlaces {
   // them.
   std::vector<glm::dvec3> line(const std::vector<Place>& path) const;
 
-  // The position that model space is relative to, in world coordinates.
+  // Returns the origin of model space in world coordinates.
   glm::dvec3 origin() const { return origin_; }
   bool is_outside(const glm::dvec3& point) const;  // `point` is on the outer side of the wall
 

@@ -32,7 +32,7 @@ std::string palette_label(const Layer& layer, double value);
 // text.
 std::string quantity_label(const query::Quantity& quantity, const Layer& layer,
                            const RecordNames& names);
-// Returns the text for a class in a column. This is the label or, without a label, the value or
+// Returns the text that describes a class. This is the label or, without a label, the value or
 // range.
 std::string quantity_text(const query::Quantity& quantity, const std::string& label);
 

@@ -20,12 +20,12 @@ namespace {
 constexpr double kMaxCells = 250'000;
 constexpr std::size_t kMaxPlaces = 32;  // tested points per line
 constexpr double kOpaque = 0.99;
-// The distance counts with at least this factor, so steep surfaces also hide points behind them.
+// The distance is multiplied by at least this factor, so steep surfaces hide points behind them.
 constexpr double kMinCosine = 1.0 / 12;
 // The depth below the surface at which lines and points are still drawn in the image.
 constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;
 
-// Returns the palette for the layer in the image.
+// Returns the palette that the image uses for the layer.
 const Palette& palette_of(const FigureRequest& request, const Layer& layer) {
   const auto& own = request.shown.shown.of(layer.id).palette;
   return own ? *own : layer.palette;
@@ -82,7 +82,7 @@ Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const g
 Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& request,
                                      const Layer& layer, const Camera& camera) {
   const Model model = request.room->model();
-  std::optional<std::int64_t> at;  // sequence of the table; empty: now, as in the image
+  std::optional<std::int64_t> at;  // sequence of the table; empty: current state
   if (*request.shown.at < request.room->edits().durable_sequence()) {
     const auto then =
         STRATA_TRY(store.tables().sequence_when(*layer.table, model.id, *request.shown.at));

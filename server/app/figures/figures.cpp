@@ -29,8 +29,8 @@ struct Area {
 };
 std::map<std::uint32_t, Area> areas_of(const std::vector<std::optional<std::uint32_t>>& keys,
                                        int columns, int rows) {
-  // Computes the chessboard distance in two passes over the grid. The area outside the grid counts
-  // as another key.
+  // Computes the chessboard distance in two passes over the grid. The area outside the grid is
+  // treated as another key.
   std::vector<int> inside(keys.size(), 0);
   const auto at = [&](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
@@ -121,7 +121,7 @@ Result<std::vector<figure::Label>> labels_of(store::Store& store, const FigureRe
 struct Composed {
   figure::SheetLayout layout;
   double scale;
-  double tightness;  // the largest scale at which the drawing fits
+  double tightness;  // n of the largest scale 1 : n at which the drawing fits
 };
 
 // Chooses the orientation that allows the larger scale, or portrait if both are equal. Uses the
@@ -175,7 +175,7 @@ Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawin
         {part.camera, static_cast<double>(part.width + 2 * part.margin) / part.camera.width});
   room::PictureRequest shown = request.shown;
   shown.samples = samples_of(drawing.dpi);
-  shown.on_floor = false;  // a drawing shows the object alone
+  shown.on_floor = false;  // a drawing shows only the object
   auto drawn = request.room->pictures().draw(
       shown, picture_parts, [&](std::size_t i, const room::PictureBand& band) -> Result<void> {
         const figure::Part& part = parts[i];

@@ -41,7 +41,7 @@ Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLa
   progress.report(1, "Saving");
   auto made = STRATA_TRY(
       layers.add(std::move(layer), std::move(computed.tiles), std::move(computed.recipe)));
-  // The layer is hidden by default, but its author sees it.
+  // The layer is hidden by default. Shows it to its author.
   STRATA_TRY(store.personal_views().show_layer_to(user, made.model_id, made.id));
   return made;
 }

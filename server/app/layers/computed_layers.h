@@ -12,8 +12,8 @@
 namespace strata::app {
 
 // Completes the recipe for the model. Refuses (invalid, at fields of `compute`) properties that
-// the model does not have, and a missing model for comparison. Runs before the job, so users learn
-// of mistakes immediately.
+// the model does not have, and a missing model for comparison. Runs before the job, so users see
+// mistakes immediately.
 Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe recipe,
                                        const Model& model);
 

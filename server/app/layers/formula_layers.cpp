@@ -24,7 +24,7 @@
 namespace strata::app {
 namespace {
 
-// `e` is a numeric expression or a condition.
+// Returns whether `e` reads records of this layer.
 bool reads_records_of(const Expression& e, const std::string& layer) {
   return (e.is_column() && e.name == layer) ||
          std::ranges::any_of(e.parts,
@@ -159,7 +159,7 @@ Result<Layer> add_formula_layer(const Services& services, const std::shared_ptr<
                                 bool has_palette, Progress& progress) {
   return layers.add(std::move(layer), [&](const Layer& made) -> Result<Layer> {
     auto computed = STRATA_TRY(compute_layer(services, room, made, author, progress));
-    // The layer is hidden by default, but its author sees it.
+    // The layer is hidden by default. Shows it to its author.
     STRATA_TRY(services.store.personal_views().show_layer_to(author.user, made.model_id, made.id));
     return has_palette ? Result<Layer>(std::move(computed))
                        : with_colors(*room, std::move(computed));

@@ -13,10 +13,10 @@ namespace strata::app {
 struct FeatureRequest {
   std::shared_ptr<room::Room> room;  // as visible to the caller
   Layer layer;
-  room::At at;  // empty: now
+  room::At at;  // empty: current state
   query::OutlinePlane plane;
   Role role = Role::viewer;
-  std::string language;  // of the labels of terms
+  std::string language;  // for the labels of terms
 };
 
 // Returns the areas of a layer's classes. For a database layer, also returns the lines and points

@@ -39,7 +39,7 @@ Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::js
 
 Result<void> NewLayers::show(const store::IdempotentResponse<Layer>& answer) {
   store::IdempotentResponse<Layer> last = answer;
-  last.user.clear();  // no separate entry: part of the creation
+  last.user.clear();  // the activity lists the creation, so it needs no entry for this update
   for (std::size_t i = 0; i < made_.size(); ++i) {
     const bool is_last = i + 1 == made_.size();
     for (int tries = 0;; ++tries) {

@@ -44,7 +44,7 @@ class NewLayers {
   std::vector<Made> made_;
 };
 
-// Returns an order above that of all other layers.
+// Returns an `order` that is higher than the `order` of all other layers.
 int order_on_top(const std::vector<Layer>& others);
 
 }  // namespace strata::app

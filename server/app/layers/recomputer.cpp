@@ -92,7 +92,7 @@ void Recomputer::attempt(
     failures_.erase(layer.id);
     return;
   }
-  // The node that has the model computes the layer.
+  // The node that owns the model computes the layer.
   if (done.error().code == ErrorCode::moved) {
     failures_[layer.id] = {now + kFirstPause, kFirstPause};
     return;

@@ -54,7 +54,7 @@ Result<MapContents> raster_contents(const MapFiles& files, const Model& model, d
   }
   MapContents contents{files.kind(), tiff ? tiff->crs : std::string(), {}, MapContents::Raster()};
   const auto world = world_of({}, files, tiff ? tiff->world : std::nullopt);
-  // All other errors mean an invalid world file.
+  // If the error is at another field, the world file is invalid.
   if (!world && world.error().field != "world") return tl::unexpected(world.error());
   if (world) {
     raster.world = *world;

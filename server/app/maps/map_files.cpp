@@ -56,7 +56,7 @@ std::optional<MapKind> kind_of(const mesh::InputFiles::Entry& file, bool is_alon
   if (ending == "shp") return MapKind::shapefile;
   if (ending == "geojson" || ending == "json") return MapKind::geojson;
   const bool is_part = ending == "dbf" || ending == "prj" || ending == "cpg" || ending == "shx";
-  // Detects JSON without a known extension: an object after blanks and a byte order mark.
+  // Detects JSON without a known extension: `{` or `[` after blanks and a byte order mark.
   const std::string_view text = as_text(file.bytes);
   const auto begin = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
   const bool may_be_json =

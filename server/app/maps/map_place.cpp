@@ -34,7 +34,7 @@ Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& fil
 Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees) {
   if (in_degrees)
     return fail(ErrorCode::invalid, "Coordinates in degrees",
-                "The coordinates of the map are longitudes and latitudes. Export it in the "
+                "The coordinates of the map are longitudes and latitudes. Export the map in the "
                 "projected coordinate system of the model" +
                     (model.crs.empty() ? "." : ", " + model.crs + "."),
                 "body");

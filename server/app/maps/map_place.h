@@ -21,7 +21,7 @@ constexpr int kMaxMapSide = 16384;  // in pixels
 struct MapOptions {
   std::optional<std::string> world;  // the six numbers of a world file
   std::string crs;                   // coordinate system that the user confirms
-  // For polygons, exactly one of the two is set.
+  // For polygons, either `value` or `attribute` is set.
   std::optional<double> value;
   std::string attribute;
   std::string names;  // attribute with the names for the numbers in `attribute`

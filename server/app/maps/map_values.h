@@ -24,7 +24,7 @@ struct MapTarget {
   std::set<double> records{};  // keys in use, for a database layer
 };
 
-// Reads GeoJSON or a shapefile with `value`, or with `attribute` and `names`, of the options.
+// Reads GeoJSON or a shapefile. Uses `value`, or `attribute` and `names`, of the options.
 Result<MapValues> polygon_values(const MapOptions& options, const MapFiles& files,
                                  const MapTarget& target, ByteBudget& budget);
 // Reads polygons from any supported file. Checks them against the coordinates of the model.

@@ -94,7 +94,7 @@ store::NodeLoad NodeLease::load() {
   return load;
 }
 
-// The only thread that waits for the database.
+// Runs on the only thread that waits for the database.
 void NodeLease::renew_until_stopped() {
   for (int count = 1;; ++count) {
     const auto sent = Clock::now();

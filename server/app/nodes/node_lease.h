@@ -20,13 +20,13 @@ class Rooms;
 namespace strata::app {
 
 // Keeps the lease of this process while the site has several nodes (store/nodes/nodes.h). If no
-// renewal that was sent within the last `trusted_for` has succeeded, the process may no longer be
-// the owner of its models. It then suspends its rooms (Rooms::suspend), and joins the site again
-// when the database answers. `trusted_for` is shorter than the lease, so the rooms acknowledge no
-// edits before another node can claim their models.
+// renewal that was sent within the last `trusted_for` has succeeded, other nodes may soon claim the
+// models. This process then suspends its rooms (Rooms::suspend), and joins the site again when the
+// database answers. `trusted_for` is shorter than the lease, so the rooms stop acknowledging edits
+// before another node can claim their models.
 //
-// One thread renews, and may hang in the database. Another thread watches the monotonic clock, and
-// never waits for the database. Thread-safe.
+// One thread renews the lease, and may wait for the database. Another thread watches the monotonic
+// clock, and never waits for the database. Thread-safe.
 class NodeLease {
  public:
   struct Options {
@@ -38,12 +38,12 @@ class NodeLease {
   // lease.
   static Result<std::unique_ptr<NodeLease>> start(store::Nodes& nodes, room::Rooms& rooms,
                                                   Options options);
-  ~NodeLease();  // stops renewing; call `leave` before
+  ~NodeLease();  // stops renewing; call `leave` first
 
   // Returns whether this process may acknowledge edits: a renewal that was sent within the last
   // `trusted_for` has succeeded.
   bool holds() const;
-  // Returns the time until the lease is over, by the clock of this process. At least 0.
+  // Returns the time until the lease ends, by the clock of this process. At least 0.
   std::chrono::milliseconds left() const;
   bool draining() const { return draining_; }
   const store::NewNode& node() const { return options_.node; }
@@ -72,7 +72,7 @@ class NodeLease {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Clock::time_point sent_;  // when the last successful renewal was sent
-  bool is_over_ = false;    // over in the database; the rooms must be suspended before a new lease
+  bool is_over_ = false;    // ended in the database; the rooms must be suspended before a new lease
   bool suspended_ = false;  // the rooms acknowledge no edits
   bool stopping_ = false;
   // Used by the renewing thread: when the load was last measured, and the processor time until

@@ -24,11 +24,11 @@ class NodeListener {
     // `unavailable` or `busy`, the message is passed again later, before all others.
     std::function<Result<void>(const store::NodeMessage& message, std::chrono::nanoseconds age)>
         on_message;
-    // Messages may be missing, so everything must be read again.
+    // Called if messages may be missing. Everything must then be read again.
     std::function<void()> on_missed;
   };
-  // Reads from the present state on. If the database does not answer now, the listener reports
-  // missed messages as soon as it answers.
+  // Reads the messages from now on. If the database does not answer now, the listener reports
+  // missed messages as soon as the database answers.
   NodeListener(std::unique_ptr<store::NodeMessages> messages, Handlers handlers);
   ~NodeListener() { stop(); }
   void stop();  // waits for a running handler
@@ -37,7 +37,7 @@ class NodeListener {
   using Clock = std::chrono::steady_clock;
   struct Waiting {
     store::NodeMessage message;
-    std::chrono::nanoseconds age;  // when it was read
+    std::chrono::nanoseconds age;  // when the message was read
     Clock::time_point read;
   };
   void run();
@@ -48,7 +48,7 @@ class NodeListener {
 
   const std::unique_ptr<store::NodeMessages> messages_;
   const Handlers handlers_;
-  // Used by the thread.
+  // Used only by the thread of the listener.
   std::deque<Waiting> waiting_;
   bool missed_ = false, more_ = false, fails_ = false;
   Clock::time_point pruned_ = Clock::now();

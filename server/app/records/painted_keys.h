@@ -37,7 +37,7 @@ std::string where_painted(const std::vector<PaintedLayer>& layers,
 Result<void> repaint_key(const Services& services, const std::vector<PaintedLayer>& layers,
                          std::int64_t key, std::optional<std::int64_t> to, const Author& author);
 
-// Creates records for keys of a database layer that have no record but a name in the legend, for
+// Creates records for keys of a database layer that have a name in the legend, but no record, for
 // example after painting a new map. The first text column of the table gets the name. Adds one
 // entry of the user to the journal of the table, and notifies participants. Refuses a locked layer
 // (403).

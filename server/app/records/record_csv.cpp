@@ -32,7 +32,7 @@ bool is_called(const Column& column, const std::string& head) {
                      [&](const auto& label) { return label.second == head; });
 }
 
-// The meaning of a cell in each row: a column of the table or a special name.
+// A cell of the first row: the name of a column of the table, or a special name.
 struct Head {
   std::string text;
   const Column* column = nullptr;

@@ -13,8 +13,8 @@
 // Records as CSV, in the layout of spreadsheets. The first row contains the names of the columns.
 namespace strata::app {
 
-// Returns the CSV cell of a record. It is empty if the column has no value. A term is shown by its
-// word if `words` contains the table of the term, and otherwise by its key.
+// Returns the CSV cell of a record. It is empty if the column has no value. For a term, the
+// cell contains the word if `words` contains the table of the term, and otherwise the key.
 std::string record_cell(const Record& record, const Column& column, char separator,
                         const WordsOfTables& words = {});
 // Returns the word for a cell with a term. Returns nothing if the cell contains no term, if the
@@ -27,8 +27,8 @@ struct MeasuredRecords {
   std::vector<std::string> names{};
   std::vector<std::vector<double>> values{};
 };
-// Begins with a byte order mark. With a semicolon as separator, numbers have a decimal comma, as in
-// the countries where Excel writes semicolons.
+// Returns CSV that begins with a byte order mark. With a semicolon as separator, numbers have a
+// decimal comma, as in the countries where Excel writes semicolons.
 std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,
                         const MeasuredRecords& measured, char separator,
                         const WordsOfTables& words = {});
@@ -51,8 +51,8 @@ struct RecordRows {
 // Reads records from CSV. The name of a column is `key`, `version` (of the record when it was
 // read), or the slug, name or label of a table column in any language. `area_m2`, `length_m` and
 // `point_count` are ignored unless a table column has that name. A row without a key is a new
-// record. Terms are keys, or words in `words`. Returns an error if the text is not CSV or its first
-// row is invalid.
+// record. Cells of terms contain keys, or words in `words`. Returns an error if the text is not
+// CSV or its first row is invalid.
 Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
                                     const WordsOfTables& words = {});
 

@@ -15,8 +15,8 @@ inline constexpr const char* kAreaMeasure = "area_m2";
 
 // The measures of a record on the surface. For a layer, `area_m2` is the area of the record's
 // texels. If the table has columns with lines or points, `length_m` is the length of the lines and
-// `point_count` the number of points. For a layer, only lines and points on its model count.
-// Otherwise, those on all models count.
+// `point_count` the number of points. For a layer, they include only the lines and points on its
+// model. Otherwise, they include the lines and points on all models.
 class RecordMeasures {
  public:
   // `columns` must be the columns of the records that are passed to `of`. The layer in `place` must
@@ -33,7 +33,7 @@ class RecordMeasures {
   bool has_area_ = false;
   std::map<std::int64_t, query::KeyArea> areas_;
   std::vector<Column> lines_, points_;
-  std::map<ModelId, double> metres_;  // meters per unit of the models whose lines and points count
+  std::map<ModelId, double> metres_;  // meters per unit of the measured models
 };
 
 // Adds each value under its name. Counts are integers.

@@ -20,7 +20,7 @@ std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::
   std::map<std::int64_t, std::string> names;
   const Column* title = name_column(page.table);
   if (!title) return names;
-  std::map<std::int64_t, std::string> named;  // names of the records in the titles
+  std::map<std::int64_t, std::string> named;  // names of the records that the titles contain
   if (title->kind == ColumnKind::term && depth < kDeepest) {
     store::RecordQuery all;
     all.limit = store::kMaxRecords;

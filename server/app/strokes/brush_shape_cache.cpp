@@ -13,7 +13,7 @@ Result<FoundTool> BrushShapeCache::find(const std::string& ref) {
   auto bits = STRATA_TRY(store_.tools().shape(tool.id));
   auto shape = std::make_shared<const ShapeTexture>(bits);
   std::lock_guard lock(mutex_);
-  // Running strokes keep their shapes, and later requests load the shapes again.
+  // Strokes in progress keep their shapes, and later requests load the shapes again.
   if (ready_.size() >= kMaxReady) ready_.clear();
   ready_[tool.id] = shape;
   return FoundTool{tool.id, std::move(shape)};

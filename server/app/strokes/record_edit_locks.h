@@ -46,7 +46,7 @@ class RecordEditLocks {
                      bool take_over, const Tell& tell);
   // Has no effect if another session edits the record.
   void end(const Record& record, const Uuid& session, const Tell& tell);
-  void leave(const Uuid& session, const Tell& tell);  // when the connection is closed
+  void leave(const Uuid& session, const Tell& tell);  // call when the connection is closed
   // Does not call `tell` if there are no entries.
   void list(ProjectId project_id, const Tell& tell) const;
 

@@ -142,7 +142,7 @@ Result<void> StrokeTracker::end(const Owner& owner, const Uuid& stroke) {
   Stroke* known = find(owner, stroke);
   if (!known)
     return fail(ErrorCode::not_found, "Unknown stroke",
-                "The server has no stroke with this id, so it cannot end it.", "stroke");
+                "The server has no stroke with this id, so it cannot end the stroke.", "stroke");
   known->ended = true;
   return {};
 }

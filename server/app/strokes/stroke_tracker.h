@@ -22,7 +22,7 @@ struct StrokeTool {
   LayerId layer_id = 0;
   StrokeBatch batch;      // without the path
   nlohmann::json record;  // the journal record without the path
-  TraceId trace{};        // of the first `stroke.begin`; all batches belong to it
+  TraceId trace{};        // trace of the first `stroke.begin`, for all batches
   bool operator==(const StrokeTool& other) const {
     return layer_id == other.layer_id && record == other.record;
   }

@@ -11,7 +11,7 @@ namespace strata {
 namespace {
 
 constexpr std::size_t kMaxLength = 100;  // in bytes; the cost grows with the square of the length
-constexpr std::size_t kMinPrefix = 3;  // length of a name that can be the beginning of another name
+constexpr std::size_t kMinPrefix = 3;    // shorter names are not compared with beginnings of names
 
 // Returns the optimal string alignment distance in bytes, because names are mostly ASCII. (It is
 // the Levenshtein distance with transpositions, where no part is edited twice.) If the distance

@@ -28,7 +28,7 @@ inline constexpr std::size_t kMaxPeriod = 64;  // bytes
 // Dates are `1985`, `1985-04`, `1985-04-12`, seasons `2001-21` (spring) … `-24` (December to
 // February), longer years `Y-17000`, and `-0043`, `156X`, `1560-XX`, `1560-12-XX`. `?`, `~` or `%`
 // may follow a date. Intervals are `A/B`, with `..` for an open end and no text for an unknown end.
-// An approximate date contains only the days that it names, because "circa" has no defined range.
+// An approximate date has the same days as an exact date, because "circa" has no defined range.
 Result<Period> parse_edtf(std::string_view text);
 
 }  // namespace strata

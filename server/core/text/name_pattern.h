@@ -24,8 +24,8 @@ class NamePattern {
   bool has(std::string_view word) const;
 
   // Returns the words of a name, or nullopt if the name does not match. If a name can match in
-  // several ways, the part for `word` is the longest known word. The other words are as short as
-  // possible from the left.
+  // several ways, the part for `word` is the longest known word. From left to right, each of
+  // the other words is as short as possible.
   struct Reading {
     std::map<std::string, std::string> words;
     bool is_known = false;

@@ -12,7 +12,7 @@ std::string percent_encode(std::string_view text);
 // Returns nullopt for a text with an invalid escape or with a NUL.
 std::optional<std::string> percent_decode(std::string_view text);
 
-// Keeps invalid escapes. For names in files that other programs wrote.
+// Keeps invalid escapes. Use it for names in files that other programs wrote.
 std::string percent_decode_leniently(std::string_view text);
 
 }  // namespace strata

@@ -106,13 +106,13 @@ std::optional<std::chrono::system_clock::time_point> parse_time(std::string_view
               &civil.tm_hour, &civil.tm_min, &civil.tm_sec, &milliseconds);
   civil.tm_year -= 1900;
   civil.tm_mon -= 1;
-  civil.tm_isdst = -1;  // daylight saving time as in that zone at that time
+  civil.tm_isdst = -1;  // mktime determines whether daylight saving time applies
   const bool has_zone = text.size() > 10 && text.find_first_of("Zz+-", 10) != text.npos;
   const std::time_t seconds =
       has_zone || unzoned == UnzonedTime::utc ? timegm(&civil) : std::mktime(&civil);
   using Clock = std::chrono::system_clock;
-  // The clock counts nanoseconds, and cannot represent times before 1678 and after 2261. The
-  // nearest time takes their place.
+  // The clock counts nanoseconds, and cannot represent times before 1678 and after 2261. Such
+  // times are clamped to this range.
   constexpr auto kLast = std::chrono::floor<std::chrono::seconds>(Clock::time_point::max());
   constexpr auto kFirst = std::chrono::ceil<std::chrono::seconds>(Clock::time_point::min());
   const auto time = std::clamp(std::chrono::sys_seconds(std::chrono::seconds(seconds)), kFirst,

@@ -9,7 +9,7 @@
 namespace strata {
 
 // Returns the day number (edtf.h) of YYYY-MM-DD from year 1, the range that databases and
-// spreadsheets support. Write an earlier day as a period.
+// spreadsheets support. Earlier days can be stored as periods.
 std::optional<std::int64_t> day_of(std::string_view text);
 
 // Converts RFC 3339 to UTC with milliseconds. Accepts a space instead of the T, a time without
@@ -17,8 +17,8 @@ std::optional<std::int64_t> day_of(std::string_view text);
 // nullopt outside the years 1 to 9999.
 std::optional<std::string> utc_timestamp(std::string_view text);
 
-// Parses the same texts. `unzoned` is the zone of a time without a zone: UTC or that of this
-// machine.
+// Parses the texts that utc_timestamp accepts. `unzoned` is the zone of a time without a zone: UTC
+// or the zone of this machine.
 enum class UnzonedTime { utc, local };
 std::optional<std::chrono::system_clock::time_point> parse_time(
     std::string_view text, UnzonedTime unzoned = UnzonedTime::utc);

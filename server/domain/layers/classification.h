@@ -7,7 +7,7 @@
 
 namespace strata {
 
-// Methods to divide numbers into classes, as for maps.
+// Methods that divide numbers into classes, as on maps.
 enum class ClassMethod {
   equal,     // intervals of equal width
   quantile,  // classes with equal counts of numbers, but equal numbers are in one class

@@ -15,16 +15,16 @@ using Rgba = std::array<std::uint8_t, 4>;
 
 enum class PaletteMode { linear, step, categorical };
 
-// How a color is drawn. Patterns leave the content below visible, and are readable in grayscale.
+// The pattern of a color. Patterns leave the content below visible, and are readable in grayscale.
 // Lines and dots have fixed positions in the image. An outline is empty inside.
 enum class Pattern { solid, hatch, dots, outline };
 
 // Control points that map values to colors. `linear` interpolates between points. `step` uses the
-// color of the last point at or below the value. `categorical` gives listed values their own color
-// and others a generated color. A value outside [min,max] gets the color of the nearer end. With a
-// and others a generated color. A value outside [min,max] gets the color of the nearer end. With a
-// `column`, the values are those in this column of the key's record: numbers or, in a categorical
-// palette, texts. A point has its text in `value`, and `at` only defines the order of the points.
+// color of the last point at or below the value. `categorical` uses the colors of the points for
+// listed values, and generated colors for other values. A value outside [min,max] gets the color of
+// the nearer end. With a `column`, the palette uses the values in this column of the key's records:
+// numbers or, in a categorical palette, texts. A point then has its text in `value`, and `at` only
+// defines the order of the points.
 struct Palette {
   struct Point {
     double at = 0;

@@ -21,10 +21,10 @@ struct TileRevision {
 TileRevision make_revision(TileAddress address, const TileData& before, const TileData& after,
                            const TileMask& written);
 void apply(const TileRevision& revision, TileData& tile);
-// Adds the next revision of the same tile. The result leads from the content before the first one
-// to the content after the second one.
+// Adds the next revision of the same tile. The result changes the content before the first
+// revision into the content after the second revision.
 void append(const TileRevision& next, TileRevision& revision);
-// Returns whether only written texels differ. Undo depends on it when revisions are merged.
+// Returns whether only written texels differ. Undo requires this of merged revisions.
 bool differs_only_where_written(const TileRevision& revision);
 
 // Convert to and from the stored format (zstd, with a version). The decoders check every bound, so

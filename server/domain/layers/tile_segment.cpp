@@ -12,8 +12,8 @@ namespace {
 
 // The stored format: one byte for the version, one byte for the width of a texel, then a zstd frame
 // with, in sequence,
-// - the number of revisions (one byte), their sequences (8 bytes each, little-endian) and the kinds
-//   of what they wrote (one byte each),
+// - the number of revisions (one byte), their sequences (8 bytes each, little-endian), and the kind
+//   of each revision (one byte each),
 // - the tile before them: `valid` and the values,
 // - for each revision the mask of written texels, and then, depending on the kind, nothing, the
 //   bits of the value (4 bytes), or the valid texels among the written ones (a mask) and the values
@@ -63,7 +63,7 @@ tl::unexpected<Error> damaged(const char* why) {
   return fail(ErrorCode::internal, "Damaged tile", std::string("A stored segment ") + why);
 }
 
-// What a revision wrote, if that is the same for all texels.
+// The kind of a revision, and the bits of its value if it wrote one value to all texels.
 struct Written {
   Kind kind = Kind::values;
   std::uint32_t bits = 0;

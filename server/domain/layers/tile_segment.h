@@ -9,10 +9,10 @@
 
 namespace strata {
 
-// Consecutive revisions of one tile, with the tile before the first of them. A segment contains
-// what each revision wrote instead of the difference, because most strokes write one value. So a
-// segment takes a small part of the space of its revisions, and the tile can be read at any of
-// their sequences without older data.
+// Consecutive revisions of one tile, with the tile before the first revision. A segment stores the
+// values that each revision wrote and not the difference, because most strokes write one value.
+// Therefore, a segment is much smaller than its revisions. The tile can be read at the sequence of
+// each revision without older data.
 struct TileSegment {
   static constexpr int kMaxRevisions = 64;
 

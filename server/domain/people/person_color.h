@@ -13,7 +13,7 @@ namespace strata {
 // accounts.
 std::string_view person_color(PersonId account);
 
-// For names without an account, such as names in the journal of another server.
+// The color of names without an account, such as names in the journal of another server.
 inline constexpr std::string_view kNobodysColor = "#5f6668";
 
 }  // namespace strata

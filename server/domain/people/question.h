@@ -64,7 +64,7 @@ class Question : public std::enable_shared_from_this<Question> {
   // Throws QuestionEnded if the question has ended. Waits during a turn of another user.
   void check();
   // Call before the computation takes this number of steps. Throws QuestionEnded (`invalid`) if the
-  // total number of steps exceeds the limit. The computation must then take none of them.
+  // total number of steps exceeds the limit. Then the computation must not begin these steps.
   void spend(std::uint64_t steps);
   // Counts steps after they were taken, for the metrics of the server.
   void took(std::uint64_t steps) {
@@ -95,7 +95,7 @@ class Question : public std::enable_shared_from_this<Question> {
     Helper(const Helper&) = delete;
     Helper& operator=(const Helper&) = delete;
   };
-  // For work whose result other users also need. Such work belongs to no question.
+  // Marks a thread whose work belongs to no question, because other users also need the result.
   class Aside : public Scope {
    public:
     Aside() : Scope(nullptr) {}
@@ -118,7 +118,7 @@ class Question : public std::enable_shared_from_this<Question> {
   QuestionTurns::Place place_;
 };
 
-// A turn for one part of the work on the current question. Does nothing without a question.
+// A turn for one part of the work on the current question. Has no effect without a question.
 class QuestionTurn {
  public:
   QuestionTurn();

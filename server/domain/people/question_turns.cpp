@@ -22,8 +22,8 @@ void QuestionTurns::leave(Place& place) {
   place.state = Place::State::away;
   place.paused = false;
   --askers_.at(place.asker).places;
-  // Keeps the entry of a user who had more time than the others, until the others have had as much.
-  // Otherwise, a new question of this user would begin with less time than the user already had.
+  // Keeps the entry of a user who has used more time than others, until these have used as much.
+  // Otherwise, a new question of this user would begin with less time than the user has used.
   std::erase_if(askers_, [&](const auto& each) {
     return each.second.places == 0 && each.second.served <= now_;
   });

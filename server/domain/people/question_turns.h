@@ -15,7 +15,7 @@ namespace strata {
 // and running questions pause after a while. The processor time is shared fairly between users,
 // regardless of the number of their questions (start-time fair queueing, as in
 // render/thread/frame_queue). The user with the least processor time is
-// next. Time without questions gives a user no advantage. Thread-safe.
+// next. Users gain no advantage from time without questions. Thread-safe.
 class QuestionTurns {
  public:
   using Clock = std::chrono::steady_clock;
@@ -35,7 +35,7 @@ class QuestionTurns {
     bool over = false;  // the question no longer waits
   };
 
-  void enter(Place& place);  // returns when the turn of the question begins, or when it is over
+  void enter(Place& place);  // returns when the turn begins, or the question stops waiting
   void leave(Place& place);
   // Call from any thread that works on an entered question. If a turn of another question is due,
   // waits for the next turn of this question.

@@ -7,8 +7,8 @@
 
 namespace strata {
 
-// Which users of a project see a layer, column or attachment. Each level is visible to fewer users
-// than the one before it. Other users get the same responses as for an entity that does not exist.
+// The users of a project who see a layer, column or attachment. Each level has fewer users than the
+// previous level. Other users get the same responses as for an entity that does not exist.
 enum class Visibility {
   everyone,  // "public"
   team,      // annotators and above
@@ -17,13 +17,13 @@ enum class Visibility {
 std::optional<Visibility> parse_visibility(std::string_view name);
 std::string_view name(Visibility visibility);
 
-// The only rule for visibility. `role` is the role in the project.
+// Returns whether this role in the project sees the entity. This is the only rule for visibility.
 bool sees(Role role, Visibility visibility);
-// Returns the lowest role that sees entities of this visibility. Content that is computed for all
-// users with that role may only be computed from data that the role sees.
+// Returns the lowest role that sees entities of this visibility. If the server computes content
+// for all users with that role, it must only use data that the role sees.
 Role least_role(Visibility visibility);
-// Returns the most restricted visibility that the role sees. It determines everything that the role
-// sees.
+// Returns the most restricted visibility that the role sees. The role also sees all less restricted
+// entities.
 Visibility sight_of(Role role);
 
 }  // namespace strata

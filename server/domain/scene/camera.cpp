@@ -18,7 +18,7 @@ bool is_finite(const glm::dmat4& m) {
 
 constexpr double kMinNormalLength = 1e-100;
 
-// Also tests the inverse: in small or large units, the determinant alone does not show the result.
+// Also tests the inverse, because the determinant alone is not reliable in small or large units.
 bool is_invertible(const glm::dmat4& m) {
   const double det = glm::determinant(m);
   if (!std::isfinite(det) || det == 0) return false;

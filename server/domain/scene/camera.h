@@ -39,8 +39,8 @@ glm::mat4 clip_from_model(const Camera& camera, const glm::dvec3& origin);
 using SectionPlanes = std::array<glm::vec4, kMaxSectionPlanes>;
 SectionPlanes section_in_model(const Camera& camera, const glm::dvec3& origin);
 
-// Returns whether the section cuts away the eye. A visible back face is then the inside of a solid.
-// (Without perspective, the eye is infinitely far away.)
+// Returns whether the eye is in the part that the section removes. A visible back face is then the
+// inside of a solid. (Without perspective, the eye is infinitely distant.)
 bool eye_is_cut_away(const Camera& camera);
 
 // Returns the camera for some rows of the window, counted from the top. It shows the same content

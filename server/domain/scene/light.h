@@ -32,7 +32,7 @@ inline double opacity_of_layers(const Light& light) {
   return light.mode == LightMode::raking ? light.layer_opacity : 1;
 }
 
-// Returns an error for a direction without length and for numbers out of range.
+// Returns an error for a direction of length 0 and for numbers out of range.
 Result<void> validate(const Light& light, const std::string& field = "light");
 
 }  // namespace strata

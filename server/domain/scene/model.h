@@ -19,7 +19,7 @@ struct Project {
   std::string slug;
   std::string description;
   std::int64_t version = 1;
-  // Changes to an entity with a version must give the version in If-Match.
+  // A request that changes an entity with a version must contain the version in If-Match.
   bool require_if_match = false;
 };
 

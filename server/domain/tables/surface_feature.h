@@ -14,10 +14,10 @@
 
 namespace strata {
 
-// A line (a crack, whose repair is paid by the meter) or a point (a sample) of a record on a model,
-// in addition to texels. Columns of kind `line` and `point` hold lists of features: `[{"model": 3,
-// "coordinates": [[x, y, z], …]}]`. Coordinates are world coordinates in the unit of the model. The
-// points of a line are so close that the surface between them is straight.
+// A line or a point of a record on a model, in addition to texels. Examples are a crack, because
+// its repair is paid by the meter, and a sample. Columns of kind `line` and `point` hold lists of
+// features: `[{"model": 3, "coordinates": [[x, y, z], …]}]`. Coordinates are world coordinates in
+// the unit of the model. The surface is straight between neighboring points of a line.
 struct SurfaceFeature {
   ModelId model = 0;
   std::vector<glm::dvec3> places;  // one point, or two or more points of a line
@@ -34,11 +34,11 @@ inline constexpr std::size_t kMaxFeatures = 1000;         // per cell
 inline constexpr std::size_t kMaxFeaturePlaces = 10'000;  // per cell
 inline constexpr double kMaxFeatureCoordinate = 1e12;
 
-// Reads the features in the value of a cell. Returns nullopt for another kind and beyond these
-// limits.
+// Reads the features in the value of a cell. Returns nullopt if the features have another kind or
+// exceed the limits above.
 std::optional<std::vector<SurfaceFeature>> read_features(const nlohmann::json& value, bool lines);
 nlohmann::json to_json(std::span<const SurfaceFeature> features);
-// Returns the features of a record in a column of lines or points. Empty without a value.
+// Returns the features of a record in a column of lines or points, or none without a value.
 std::vector<SurfaceFeature> features_of(const Record& record, const Column& column);
 
 // Prints and parses the form for CSV cells: `3 LINESTRING Z (0 0 1, 2.5 0 1); 3 POINT Z (1 2 3)`.

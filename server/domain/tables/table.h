@@ -75,7 +75,7 @@ struct Table {
   std::string slug;  // unique in the project, never all digits
   Labels labels;
   std::string description;
-  // By order, without hidden columns. For a user, only the columns that the user sees.
+  // Sorted by `order`, without hidden columns. A user gets only the columns that the user sees.
   std::vector<Column> columns;
   // The column that was chosen for the names of the records.
   std::optional<ColumnId> title_column;
@@ -85,14 +85,14 @@ struct Table {
 };
 
 inline constexpr std::int64_t kMaxRecordKey = 0xffffffff;
-// The target of a column that refers to its own table, before the table exists.
+// The target of a column that refers to its own table, while the new table has no id.
 inline constexpr TableId kOwnTable = 0;
 inline constexpr int kMaxColumns = 256;
 inline constexpr int kMaxChoices = 1000;
 // The maximum bytes of a unit, a choice, a label or a comment.
 inline constexpr std::size_t kMaxColumnTextLength = 2000;
 
-// A row, identified by its key. `values` are by column id. A column without an entry has no value.
+// A row with its key. `values` contains the values by column id. A missing entry means no value.
 struct Record {
   std::int64_t key = 0;
   std::int64_t version = 1;

@@ -24,7 +24,7 @@ struct Part {
 };
 constexpr std::array<Part, 3> kParts{{{0.03, 1.2, 0.4f}, {0.15, 4.0, 0.35f}, {0.6, 8.0, 0.25f}}};
 
-using Heights = std::vector<float>;  // of the lowest surface above each texel; infinite: none
+using Heights = std::vector<float>;  // lowest surface above each texel; infinite: no surface
 using Map = std::vector<float>;
 
 std::size_t index(int x, int y) {
@@ -38,8 +38,8 @@ void lower(Heights& heights, glm::dvec3 point) {
   height = std::min(height, static_cast<float>(point.z));
 }
 
-// `corners`: x and y in texels, z above the floor. The edges are drawn too, because an upright or
-// small triangle may contain no center of a texel.
+// Draws a triangle. `corners`: x and y in texels, z above the floor. Also draws the edges, because
+// an upright or small triangle may contain no center of a texel.
 void draw(Heights& heights, const std::array<glm::dvec3, 3>& corners) {
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 from = corners[i], to = corners[(i + 1) % 3];

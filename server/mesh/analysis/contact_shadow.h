@@ -24,7 +24,7 @@ struct ContactShadow {
 
 // `up` is one of kUpDirections (domain/scene/up.h). The shadow of a part of the model is darker and
 // sharper if the part is closer to the floor. Takes a few milliseconds for 100 000 triangles. For a
-// large model, use a coarser copy. Returns null for a model without extent across `up`.
+// large model, use a coarser copy. Returns null if the model has no extent perpendicular to `up`.
 std::shared_ptr<const ContactShadow> contact_shadow(const Geometry& geometry, std::string_view up);
 
 }  // namespace strata::mesh

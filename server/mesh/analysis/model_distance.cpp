@@ -20,8 +20,8 @@ float ModelDistance::at(const glm::vec3& position) const {
   const glm::vec3 point(world_there - there_->origin);
   const auto hit = tree_.nearest(point, static_cast<float>(max_distance_ * there_per_here_));
   if (!hit) return std::numeric_limits<float>::quiet_NaN();
-  // Inside a face, the face's own normal gives the sign. On an edge or a vertex, the mean of the
-  // surrounding normals gives it.
+  // Inside a face, the normal of the face determines the sign. On an edge or a vertex, the mean of
+  // the surrounding normals determines the sign.
   constexpr float kOnEdge = 1e-5f;
   const glm::vec3& w = hit->barycentric;
   glm::vec3 normal = hit->normal;

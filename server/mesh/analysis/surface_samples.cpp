@@ -152,7 +152,7 @@ class SampleBands {
             }};
   }
 
-  // Appends the pieces of a triangle that lie in cells [first, end) along the axis.
+  // Appends the pieces of a triangle that are in cells [first, end) along the axis.
   void cut(std::uint32_t triangle, int first, int end, std::vector<Piece>& pieces) const {
     const glm::vec3 a = corner(triangle, 0), ab = corner(triangle, 1) - a,
                     ac = corner(triangle, 2) - a;
@@ -178,7 +178,7 @@ class SampleBands {
     for (int i = 0; i < cuts; ++i) {
       int j_begin = 0, j_end = cuts - i;
       if (cuts > kManyCuts) {
-        // Pieces that can be in [first, end), plus 2 cells and 1 piece for their size and rounding.
+        // Selects the pieces in [first, end). Adds 2 cells and 1 piece for their size and rounding.
         const double at = (a[axis_] + double{ab[axis_]} * i / cuts - samples_.low_[axis_]) / cell_;
         const double step = double{ac[axis_]} / cuts / cell_;
         const double low = (first - 2 - at) / step, high = (end + 2 - at) / step;

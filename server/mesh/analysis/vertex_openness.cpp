@@ -21,7 +21,7 @@ constexpr float kSuspicious = 0.1f;  // an outer side this dark may be an inner 
 constexpr int kSmoothings = 2;       // reduces the noise of few rays
 constexpr int kPositionsAtOnce = 2048;
 
-// The pointer does not own the geometry. The caller keeps it.
+// Returns a pointer that does not own the geometry. The geometry must outlive the pointer.
 std::shared_ptr<const Geometry> borrowed(const Geometry& geometry) {
   return {std::shared_ptr<void>(), &geometry};
 }

@@ -51,7 +51,7 @@ constexpr double kRepackingStep = 0.995;
 constexpr int kMaxRepackings = 8;
 constexpr int kMaxResolution = 16384;
 // 1/8192 texel at the lowest resolution. At 2048 this is a multiple of 2^-24 of the atlas, so float
-// UVs hold it exactly. Every GPU then snaps a vertex to the same position.
+// UVs represent it exactly. Every GPU then snaps a vertex to the same position.
 constexpr double kUvSteps = 8192;
 
 // The intermediate results of unwrapping a surface.

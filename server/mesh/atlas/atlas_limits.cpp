@@ -33,7 +33,7 @@ std::vector<AtlasReport::Limit> limits_of_packing(std::span<const Outline> outli
       "long_triangles",
       "The longest part is as long as the texture is wide. It sets the scale of all "
       "other parts. Long triangles cannot be cut."};
-  const AtlasReport::Limit many{"many_charts", "The surface falls into " +
+  const AtlasReport::Limit many{"many_charts", "The surface consists of " +
                                                    std::to_string(outlines.size()) +
                                                    " parts. The margins around them take " +
                                                    percent(lost) + " of the texture."};

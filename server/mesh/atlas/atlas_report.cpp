@@ -22,8 +22,8 @@ struct Stretch {
   float area;
 };
 
-// A stretch greater than this multiple of the mean counts as this multiple, because the ratio of a
-// sliver is not meaningful for the atlas.
+// The stretch of a triangle is limited to this multiple of the mean, because the ratio of a sliver
+// is not meaningful for the atlas.
 constexpr double kMaxStretch = 50;
 constexpr int kMaxMeasured = 8192;                         // finer grids would take seconds
 constexpr std::size_t kBandTexels = std::size_t{1} << 22;  // texels measured at a time

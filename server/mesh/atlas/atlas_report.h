@@ -25,7 +25,7 @@ struct AtlasMeasure {
   double stretch_mean = 0, stretch_p99 = 0;  // as in AtlasReport, at most 50 per triangle
 };
 
-// In all functions of this file, `corner_uvs` must lie in [0,1]².
+// In all functions of this file, `corner_uvs` must be in [0,1]².
 TexelCounts count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs,
                          int resolution);
 AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs);

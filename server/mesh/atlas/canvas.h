@@ -8,7 +8,7 @@
 namespace strata::mesh {
 
 // The occupied texels of an atlas as bits, with data for a fast search for the lowest free position
-// of a chart's exact shape. Charts can lie in the bays and holes of other charts.
+// of a chart's exact shape. Charts can be placed in the bays and holes of other charts.
 class Canvas {
  public:
   Canvas(int side, int gap) : Canvas(side, side, gap) {}
@@ -17,9 +17,9 @@ class Canvas {
   struct Spot {
     int x = -1, y = 0;
   };
-  // Returns a position where all texels of the mask are free, with `lowest` ≤ y < `highest`. Of
-  // these positions it returns the lowest, and of the lowest positions the leftmost. x < 0 if no
-  // such position exists.
+  // Returns a position where all texels of the mask are free, with `lowest` ≤ y < `highest`. It
+  // is the lowest of these positions, or the leftmost if several are equally low. Returns x < 0 if
+  // no such position exists.
   Spot find(const ChartMask& mask, int lowest, int highest);
 
   // Occupies the texels of the mask and all texels within a distance of `gap` texels.

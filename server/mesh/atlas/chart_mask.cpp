@@ -38,7 +38,7 @@ class Rows {
     for (std::size_t y = 0; y < rim_.size(); ++y) {
       auto& runs = rim_[y];
       add_inner(crossings_[y], runs);
-      // A row can be empty only because of rounding. It then counts as full.
+      // A row can be empty only because of rounding. Such a row is treated as full.
       if (runs.empty()) runs.push_back({0, static_cast<std::int16_t>(width_)});
       std::sort(runs.begin(), runs.end(),
                 [](const auto& a, const auto& b) { return a.begin < b.begin; });

@@ -85,7 +85,7 @@ class Finder {
     if (piece.faces.size() > 1 && ends_at_creases(piece, number)) {
       pieces_.push_back(std::move(piece));
     } else {
-      // Other seeds on this smooth surface give almost this piece again, so they are not tried.
+      // Skips other seeds on this smooth surface, because their pieces would be almost the same.
       for (const auto face : piece.faces) of_face_[face] = FlatPieces::kNone, was_tried_[face] = 1;
     }
   }

@@ -8,7 +8,7 @@
 
 namespace strata::mesh {
 
-// The texels covered by the faces of one growing chart. With them, a chart can refuse faces that
+// The texels covered by the faces of one growing chart. A chart uses them to refuse faces that
 // share a texel. Chart coordinates are in texels relative to the center of a square window of
 // `side` texels. Faces that extend beyond the window are refused.
 class Occupancy {

@@ -156,7 +156,7 @@ std::optional<Trial> place(const Shapes& shapes, int side, int most_height, int 
     Canvas::Spot best;
     int best_turn = 0, best_top = most_height + 1;
     // The turn with a horizontal longer side is tried first. An upright turn reaches the same
-    // height only from a much lower position, so little is left to search.
+    // height only from a much lower position, so the search ends early.
     const int lying = shape.box.x >= shape.box.y ? 0 : 1;
     for (const int turn : {lying, lying + 2, 1 - lying, 3 - lying}) {
       // Small charts often have the same shape in opposite turns.

@@ -20,10 +20,10 @@ namespace {
 constexpr int kGap = 4;            // texels between charts
 constexpr int kSmoothing = 0;      // a few faces have no noise, and smoothing would shrink them
 constexpr double kUvSteps = 8192;  // as in atlas.cpp
-// The attempts in their order. The first attempt with room for all charts is used.
+// An attempt to place all charts. The first attempt in kAttempts that succeeds is used.
 struct Attempt {
   float scale;     // of the triangles that stay
-  double density;  // of the moved triangles, relative to those that stay
+  double density;  // of the moved triangles, relative to the triangles that stay
 };
 constexpr std::array<Attempt, 7> kAttempts{{{1, 1},
                                             {1, 0.7},

@@ -20,7 +20,7 @@ struct MovedUvs {
 // Unfolds the triangles `moved`, which are ascending and have an area. Places them on texels that
 // the other triangles leave free at `resolution`, at the scale of the other triangles. If there is
 // not enough room, uses a smaller scale for the moved triangles. If this is not enough, also scales
-// the other triangles down. `corner_uvs` of the other triangles lie in [0,1]². Returns nothing if
+// the other triangles down. `corner_uvs` of the other triangles are in [0,1]². Returns nothing if
 // the work is canceled, or if the triangles do not fit at any scale.
 std::optional<MovedUvs> move_triangles(const TriangleMesh& mesh,
                                        std::span<const glm::vec2> corner_uvs,

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kLinesBetweenReports = 65536;
 constexpr std::size_t kMaxNumbers = 8;
 constexpr std::size_t kMaxLibraries = 100, kMaxNames = 10000;
-constexpr int kTextureToFind = 0;  // for a UDIM material until its tiles are known
+constexpr int kTextureToFind = 0;  // of a UDIM material whose tiles are not known yet
 
 // Reads counts, points and faces in three passes. A face can therefore use points that follow it in
 // the file, and polygons can be split while they are read.

@@ -80,7 +80,7 @@ class HeaderReader {
 
  private:
   // All lines have the same ending as the first line. In old Macintosh files this is a single CR,
-  // and an LF byte after "end_header" CR already belongs to the data. The CR of a CRLF counts as a
+  // and an LF byte after "end_header" CR already belongs to the data. The CR of a CRLF is read as a
   // blank.
   bool next_line(std::string_view& line) {
     if (position_ >= text_.size() || position_ > kMaxHeader) return false;

@@ -18,7 +18,7 @@ namespace {
 // The prior share of each direction, independent of the shape, in the order of kUpDirections.
 constexpr std::array<double, 6> kPrior{0.10, 0.28, 0.32, 0.08, 0.10, 0.12};
 constexpr double kAnyPose = 0.005;    // share of a direction in which the object does not rest
-constexpr double kTilt_degrees = 30;  // a face of the hull counts for an axis up to this angle
+constexpr double kTilt_degrees = 30;  // hull faces at a larger angle to an axis do not affect it
 // as a share of the diagonal; points closer to the ground rest on it
 constexpr double kContact = 0.008;
 // as a share of the ways to drop the object; rarer poses are skipped
@@ -28,7 +28,7 @@ constexpr int kMaxPoses = 40;
 constexpr double kLevel = 0.85;
 constexpr int kColumns = 128;               // per side, for the points of the hull
 constexpr int kCells = 48;                  // per side, for hollows
-constexpr double kTouching = 0.04;          // share of the height that counts as a rim
+constexpr double kTouching = 0.04;          // largest depth of rim cells, as a share of the height
 constexpr double kRound = 2.5;              // weight of a round outline
 constexpr double kHollow = 6;               // weight of hollows
 constexpr double kSheet = 0.5, kFront = 3;  // limit for a sheet, and the weight of its front
@@ -306,13 +306,13 @@ class Silhouette {
   }
 
   // Returns the mean depth of the surface below its highest points. Only the area enclosed by these
-  // points counts, so a larger area gives a larger result. A surface seen from its back is not a
-  // hollow, because the scan has a hole there where the object was standing.
+  // points contributes, so the result increases with this area. A surface seen from its back is not
+  // a hollow, because the scan has a hole there where the object was standing.
   double hollow_above() const { return hollow(+1); }
   double hollow_below() const { return hollow(-1); }
 
-  // Returns the likelihood (0…1) of production on a wheel or a lathe, judged by the outline. A
-  // square gives 0.
+  // Returns the likelihood (0…1) of production on a wheel or a lathe, judged by the outline. The
+  // result for a square is 0.
   double roundness() const {
     int both = 0, either = 0;
     for (int y = 0; y < kCells; ++y)

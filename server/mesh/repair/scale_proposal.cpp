@@ -31,7 +31,7 @@ struct UnitShare {
 };
 constexpr UnitShare kUnits[] = {{Unit::mm, 0.45}, {Unit::m, 0.45}, {Unit::cm, 0.10}};
 
-// Returns the likelihood of a size per factor of ten.
+// Returns the probability density of a size over its decimal logarithm.
 double plausibility(double size_m) {
   for (const SizeClass& size : kSizes)
     if (size_m >= size.from_m && size_m < size.to_m)

@@ -106,7 +106,7 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
   UvFaults faults = find_single_faults(mesh, mesh.corner_uvs);
   const double surface = surface_area(mesh);
   const auto too_many = [&] { return faults.area > kMaxMoved * surface; };
-  // A small area may have no texels: moving its triangles would change the texture's bytes.
+  // Accepts a small area without texels, because moving its triangles would change the texture.
   const bool only_without_area = faults.count[static_cast<int>(UvFault::not_finite)] == 0 &&
                                  faults.count[static_cast<int>(UvFault::outside)] == 0;
   if (only_without_area && faults.area <= kMaxAreaWithoutUv * surface) faults = no_faults(mesh);

@@ -30,7 +30,7 @@ UvFaults find_single_faults(const TriangleMesh& mesh, std::span<const glm::vec2>
 // Marks triangles that share texels with others at `resolution`, until the remaining triangles
 // share no texels. Triangles with the most shared texels are marked first, so a triangle that
 // covers many others is found. With the same number of shared texels, later triangles are marked
-// first. All coordinates of triangles without a fault must lie in [0,1]².
+// first. All coordinates of triangles without a fault must be in [0,1]².
 void find_overlaps(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution,
                    UvFaults& faults);
 

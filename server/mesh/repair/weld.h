@@ -11,7 +11,7 @@ namespace strata::mesh {
 std::uint64_t weld_equal(TriangleMesh& mesh, const std::vector<bool>& used);
 
 // Redirects every corner to the nearest kept vertex within `distance`. A vertex is kept if no
-// earlier vertex lies within this distance. No vertex therefore moves farther than `distance`, and
+// earlier vertex is within this distance. No vertex therefore moves farther than `distance`, and
 // chains of near vertices do not collapse. Coordinates must be finite.
 std::uint64_t weld_near(TriangleMesh& mesh, const std::vector<bool>& used, double distance);
 

@@ -14,7 +14,7 @@ struct BoundingSphere {
 // The occupied 8 × 8 blocks of a surface map, ordered by their position on the model. The time of a
 // search in a small part of space is proportional to that part. It does not depend on the size of
 // the map and the mesh. Neighbors in the atlas may be far apart on the model. A block in which
-// distant islands meet therefore counts as several parts.
+// distant islands meet is therefore divided into several parts.
 struct BlockTree {
   static constexpr std::size_t kChildren = 8;
 
@@ -41,7 +41,7 @@ BlockTree build_block_tree(std::vector<BoundedPart> parts, float slack, int thre
 
 // Adds the parts of a block, or only `whole` if the block is one part. Texels separated by an empty
 // gap of `least_gap` belong to different parts. `positions` has the 64 positions of the block, and
-// only those in `owned` count. Every bound is enlarged by `slack`.
+// only the positions in `owned` are used. Every bound is enlarged by `slack`.
 void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned,
                         float least_gap, float slack, std::vector<BoundedPart>& parts);
 

@@ -15,10 +15,10 @@ namespace strata::mesh {
 // arrays of double.
 //
 // Edges are matched by sorting. n triangles take n log n steps, independent of the number of
-// triangles that meet in a vertex. OpenMesh's `add_face` takes the square of that number, because
-// it searches around vertices. Assertions of `add_face` may also terminate the program. Tests
-// compare both methods. If the mesh is not a surface at an edge (repair prevents this), the edge is
-// open on all sides.
+// triangles that meet in a vertex. The steps of OpenMesh's `add_face` increase with the square of
+// that number, because it searches around vertices. Assertions of `add_face` may also terminate the
+// program. Tests compare both methods. If the mesh is not a surface at an edge (repair prevents
+// this), the edge is open on all sides.
 //
 // This class takes 50 bytes per triangle, and about 15 more bytes during construction. 10 million
 // triangles take 500 MB. For long work, keep `face_neighbours` (12 bytes per triangle) and destroy

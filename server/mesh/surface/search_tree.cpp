@@ -273,7 +273,7 @@ struct SearchTree::Impl {
     const Vertex &a = geometry->vertices[i[0]], &b = geometry->vertices[i[1]],
                  &c = geometry->vertices[i[2]];
     const auto [pa, pb, pc] = corners(triangle);
-    // World positions give the orientation of triangles that have no area in float.
+    // Uses world positions, because some triangles have an area only in double precision.
     const glm::dvec3& base = geometry->positions[a.position_index];
     const glm::dvec3 cross = glm::cross(geometry->positions[b.position_index] - base,
                                         geometry->positions[c.position_index] - base);

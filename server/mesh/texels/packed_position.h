@@ -37,7 +37,7 @@ inline SurfaceMap::PackedBox packed_box_of(glm::vec3 low, glm::vec3 high) {
   return box;
 }
 
-// `position` must lie in the box.
+// `position` must be in the box.
 inline std::uint64_t pack_position(glm::vec3 position, const SurfaceMap::PackedBox& box) {
   const auto axis = [&](int i, std::uint32_t largest) {
     const double steps = (double{position[i]} - double{box.min[i]}) / double{box.step[i]};

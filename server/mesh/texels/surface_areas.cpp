@@ -38,11 +38,11 @@ void SurfaceBake::credit_areas(int band) {
   }
 }
 
-// Returns the surface texel that is credited with area on a texel without an island or of another
-// island. This is the nearest texel of the triangle's island in the gutter's width. If there is no
-// such texel, because a tip is too thin to cover centers, it is the nearest texel covered by the
-// triangle. For a triangle that covers no texel, it is the texel that contains its centroid. That
-// texel is always a surface texel.
+// Returns the surface texel that receives the area of a triangle on a texel that the triangle's
+// island does not own. This is the nearest texel of that island within the gutter's width. If no
+// such texel exists, because a tip is too thin to cover centers, it is the nearest texel that the
+// triangle covers. If the triangle covers no texel, it is the texel that contains the centroid of
+// the triangle. That texel is always a surface texel.
 glm::ivec2 SurfaceBake::heir_of(const Leftover& leftover) const {
   const int x = static_cast<int>(leftover.texel % resolution_),
             y = static_cast<int>(leftover.texel / resolution_);

@@ -14,7 +14,7 @@
 
 namespace strata::mesh {
 
-// The data stored for each texel: its position and area, or its triangle and its position in it.
+// The data stored for each texel: its position and area, or its triangle and the position there.
 enum class BakeFor { map, owners };
 
 // The steps of baking a surface map. Work is divided into fixed horizontal bands of the atlas, so

@@ -182,7 +182,7 @@ class Builder {
   // Links each texel to the nearest of a few preceding texels. No link therefore passes over
   // another texel of the triangle.
   void link_along(std::vector<Along>& texels, std::vector<TexelGraph::Link>& links) const {
-    // more texels than a triangle of this width has within two texels of its length
+    // more texels than a triangle of this width contains along two texels of its length
     constexpr std::size_t kBefore = 8;
     std::sort(texels.begin(), texels.end());
     for (std::size_t i = 1; i < texels.size(); ++i) {

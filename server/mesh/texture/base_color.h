@@ -27,7 +27,7 @@ struct BaseColor {
 // texture, at a size that keeps the textures' density. A side has 256…kMaxBaseColor texels: a power
 // of two up to 2048, and a multiple of 1024 above. The samples are multiplied by the material's
 // color, and with colors_tint_materials also by the vertex colors. The image continues around the
-// surface, so coarser levels mix in no other colors. It is a JPEG if all textures are JPEGs.
+// surface, so coarser levels contain no other colors. It is a JPEG if all textures are JPEGs.
 //
 // Pixels are lost if the textures together exceed the largest image or `memory` has too little
 // room. They are also lost if some textures are much denser than others. `repairs` then lists the

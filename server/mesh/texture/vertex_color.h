@@ -29,8 +29,8 @@ inline double linear_of_srgb(double value) {
 }
 
 // Colors given as real numbers have the range 0…1 in some files and 0…255 in others, and no header
-// specifies the range. They are read as 0…1 until a channel exceeds 1. Then the stored colors are
-// rescaled, because each of their channels was at most 1 of 255.
+// specifies the range. They are read as 0…1 until a channel exceeds 1. This shows that the range is
+// 0…255, so the colors that are already stored are rescaled.
 class RealColorScale {
  public:
   // `stored` has the colors packed before. A color without alpha is opaque.

@@ -77,8 +77,8 @@ constexpr std::string_view kPolicy =
     "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; "
     "form-action 'self'; frame-ancestors 'none'";
 // Redoc, which shows the documentation of the API, adds two style elements. One is empty and is
-// filled by a script. The other contains the style of the scroll bars. The hashes are those of
-// these two texts. All other style elements and all style attributes remain forbidden.
+// filled by a script. The other contains the style of the scroll bars. The policy contains the
+// hashes of these two texts. All other style elements and all style attributes remain forbidden.
 constexpr std::string_view kStylesOfDocs =
     "; style-src 'self' 'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=' "
     "'sha256-QMIg+bpjm3JdElJ388KYke01izlUW0UoNOeKjpMxdgc='";
@@ -409,8 +409,8 @@ void Api::answer_read(const Request& request, const Route& route, const Respond&
     const auto state = route.state ? route.state(request) : std::nullopt;
     return state ? std::optional(tag_of_state(request, *state)) : std::nullopt;
   };
-  // Compares the states first to avoid unnecessary work. A tag of the state depends on `Accept`.
-  // `*` matches any existing entity, so it can be compared only afterwards.
+  // Compares the tags first, to avoid unnecessary calls of the handler. A tag depends on `Accept`.
+  // `*` matches any existing entity, so it can be compared only after the call.
   const auto before = state_now();
   if (before && known != "*" && names_tag(known, *before))
     return respond(std::move(empty_response(304).with("ETag", *before).with("Vary", "Accept")));

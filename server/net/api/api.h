@@ -117,7 +117,7 @@ class Api {
   app::Recomputer recomputer_;
   app::DemoAnnotators demo_annotators_;
   NodeEvents node_events_;
-  std::unique_ptr<app::NodeListener> node_listener_;  // null: the server is alone
+  std::unique_ptr<app::NodeListener> node_listener_;  // null: a site with one server
 };
 
 // Returns the headers that every response gets.

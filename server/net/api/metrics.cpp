@@ -101,7 +101,7 @@ void write_edits(MetricsWriter& out, const Metrics& metrics, const Gauges& gauge
               metrics.edits.unsaved.load());
   out.counter("strata_edits_refused_total", "Edits that were refused.",
               metrics.edits.refused.load());
-  out.head("strata_edit_stage_seconds", "histogram", "Time of the stages of saved edits.");
+  out.head("strata_edit_stage_seconds", "histogram", "Duration of each stage of saved edits.");
   for (std::size_t i = 0; i < room::kEditStages.size(); ++i) {
     const std::string stage = "," + metric_label("stage", room::kEditStages[i]);
     out.histogram("strata_edit_stage_seconds", metric_label("kind", "stroke") + stage,
@@ -124,7 +124,7 @@ void write_drawing(MetricsWriter& out, const Metrics& metrics, const Gauges& gau
               metrics.frames_sent.load());
   out.counter("strata_frame_bytes_sent_total", "Bytes of the encoded frames.",
               metrics.frame_bytes_sent.load());
-  out.head("strata_frame_seconds", "histogram", "Time of the GPU thread for a frame.");
+  out.head("strata_frame_seconds", "histogram", "Time that the GPU thread needs for a frame.");
   out.histogram("strata_frame_seconds", {}, gauges.frames);
   out.gauge("strata_gpu_ready", "1 if the graphics context works, otherwise 0.", gauges.gpu_ready);
   out.gauge("strata_gpu_bytes", "GPU memory in use.", gauges.gpu_bytes);
@@ -148,7 +148,7 @@ void write_machine(MetricsWriter& out, const Metrics& metrics, const Gauges& gau
   }
   out.gauge("strata_database_ready", "1 if the database answers, otherwise 0.",
             gauges.database_ready);
-  out.head("strata_jobs", "gauge", "Jobs by state. Of the ended jobs, only the newest count.");
+  out.head("strata_jobs", "gauge", "Jobs by state, with only the newest ended jobs.");
   for (std::size_t i = 0; i < gauges.jobs.size(); ++i)
     out.value("strata_jobs", "{" + metric_label("state", kJobStates[i]) + "}", gauges.jobs[i]);
   if (const auto end = metrics.certificate_end.load())
@@ -167,7 +167,7 @@ void write_node(MetricsWriter& out, const Metrics& metrics, const Gauges& gauges
               "Messages about changes at other nodes that this node received.",
               metrics.node_messages.load());
   out.counter("strata_node_messages_missed_total",
-              "How often messages of other nodes may be missing, so all clients connected again.",
+              "Failures that may lose messages of other nodes, so all clients connect again.",
               metrics.node_messages_missed.load());
   out.head("strata_node_message_seconds", "histogram",
            "Time from a change at another node until this node has sent it to its clients.");

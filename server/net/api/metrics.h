@@ -15,34 +15,34 @@ namespace strata::net {
 
 // Counters of the module `net`. All threads may change them.
 struct Metrics {
-  std::array<std::atomic<std::uint64_t>, 6> requests{};  // by the first digit of the status code
+  std::array<std::atomic<std::uint64_t>, 6> requests{};  // indexed by the first digit of the status
   std::atomic<std::int64_t> open_connections{0};
   std::atomic<std::int64_t> open_sockets{0};  // open WebSockets
   app::EditCounters edits;
   std::atomic<std::uint64_t> frames_sent{0}, frame_bytes_sent{0};
   std::atomic<std::uint64_t> messages_received{0}, messages_refused{0};
-  // Messages of other nodes of the site, and how often some may be missing.
+  // The number of messages of other nodes, and of the failures that may lose messages.
   std::atomic<std::uint64_t> node_messages{0}, node_messages_missed{0};
-  Histogram node_message_ages;                   // from a change until its message was handled
+  Histogram node_message_ages;                   // time from a change until its message was handled
   std::atomic<std::uint64_t> questions_left{0};  // the client disconnected before the response
   // The expiry of the TLS certificate, in seconds since 1970. 0: the server uses plain HTTP.
   std::atomic<std::int64_t> certificate_end{0};
 
   std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(kLastErrorCode) + 1> problems{};
-  Histogram request_times;  // until the response is ready, without the time to receive the body
+  Histogram request_times;  // time to the response, without the time to receive the body
 
   void count_problem(ErrorCode code) { ++problems[static_cast<std::size_t>(code)]; }
   void count_request(int status) { ++requests[status >= 100 && status < 600 ? status / 100 : 0]; }
 };
 
-// Of a node of a site with several nodes.
+// Values of a node in a site with several nodes.
 struct NodeGauges {
   double lease_s = 0;  // seconds until the lease ends
   std::uint64_t models_moved = 0;
 };
 
-// Of a server with an archive (store/cluster/archive_keeper.h). Times are in seconds since 1970,
-// and 0 before the first one.
+// Values of a server with an archive (store/cluster/archive_keeper.h). Times are in seconds since
+// 1970, or 0 if there is none yet.
 struct ArchiveGauges {
   double archived_s = 0, copied_s = 0;
   std::uint64_t failed_segments = 0, failed_copies = 0;

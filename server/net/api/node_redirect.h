@@ -17,16 +17,16 @@ namespace strata::net {
 struct RouteContext;
 
 // Returns the redirection (307) of a request whose path names a model that another node has.
-// Returns nothing if this node can answer, and always if the server is alone. Call it after the
-// caller was authorized, because the address of a node is not public. May block.
+// Returns nothing if this node can answer, or if the server runs alone. Call it after the caller
+// was authorized, because the address of a node is not public. May block.
 std::optional<Response> redirect_to_owner(room::Rooms& rooms, const Request& request);
 
 // Returns `moved`, with the address of the node, if another node runs the job in the path. Call it
-// before the project of the job is looked up, because only that node knows the job. May block.
+// before the project of the job is looked up, because only that node lists the job. May block.
 Result<void> check_job_is_here(const RouteContext& context, const Request& request);
 
 // Returns the response to a request whose handler needed a model that the node at `node` has. The
-// path does not name this model, or the node has just claimed it. `target` is that of the request.
+// path does not name this model, or the node has just claimed it. `target` is the request's target.
 // A request is redirected in this way only once, because it may need models of several nodes. If
 // `again` is true or `node` is empty, returns 503, and the client repeats the request later.
 Response redirected_by_handler(std::string_view node, std::string_view target, bool again);

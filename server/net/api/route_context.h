@@ -26,8 +26,8 @@ class WorkerPool;
 struct Metrics;
 struct ServerOptions;
 
-// The services that use cases need, and those that only handlers need. Lives as long as the router.
-// A file that uses a service includes its header.
+// The services that use cases need, and the services that only handlers need. Lives as long as the
+// router. A file that uses a service includes its header.
 struct RouteContext : app::Services {
   const ServerOptions& options;
   jobs::JobQueue& jobs;

@@ -27,7 +27,7 @@ struct EditRequest;
 // Functions that the files with routes share.
 namespace strata::net {
 
-// Returns a handler that responds before it returns.
+// Returns a handler that calls `answer` and sends its result.
 Handler answering(std::function<Result<Response>(const Request&)> answer);
 
 // Returns 415 if the body declares a type other than JSON. Without a Content-Type, the server
@@ -42,7 +42,7 @@ Result<T> body_of(const Request& request, std::uint64_t max_bytes = 1u << 20) {
 
 // ETags for versions of metadata, such as "v7". `with_etag` evaluates `If-None-Match` of a read.
 // `check_if_match` evaluates `If-Match` of a change: an absent header allows any version, and an
-// old version gives 412.
+// old version causes 412.
 std::string etag_of(std::int64_t version);
 Response with_etag(Response response, const Request& request, std::int64_t version);
 Result<void> check_if_match(const Request& request, std::int64_t version);
@@ -67,7 +67,7 @@ void apply_edit(
 // Finds layers by id or slug. The error for a missing layer names `field`.
 Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
                                        const std::string& field);
-std::vector<std::string> split_list(const std::string& text);  // at commas; skips empty parts
+std::vector<std::string> split_list(const std::string& text);  // splits at commas; no empty parts
 
 // Return the same response as `GET /me`. The second function adds the cookie of a new session.
 Result<Response> who_is_signed_in(const RouteContext& context, const std::string& user, Role role);

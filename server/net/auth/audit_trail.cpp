@@ -17,7 +17,7 @@ constexpr std::string_view kFileName = "filename*=UTF-8''";
 constexpr std::size_t kMaxPath = 500;  // bytes of the path and of the media type in the log
 constexpr std::size_t kMaxIdLength = 18;
 
-// The parameters of a path that can name the downloaded object. The first in a path is used.
+// The parameters of a path that can name the downloaded object. Uses the first match.
 constexpr const char* kSubjects[] = {"layer", "attachment", "table", "job", "model", "project"};
 
 std::string attached_name(const Response& response) {
@@ -32,7 +32,7 @@ std::string cut_text(std::string_view text) { return mended_utf8(text.substr(0, 
 bool is_export(const Request& request, const Response& response) {
   if (request.method == Method::head || (response.status != 200 && response.status != 206))
     return false;
-  // A client may fetch a large file in many parts. Only the first part counts.
+  // A client may fetch a large file in many parts. The audit log contains only the first part.
   if (response.status == 206 && !response.header("Content-Range").starts_with("bytes 0-"))
     return false;
   return response.header("Content-Disposition").starts_with(kAttachment);

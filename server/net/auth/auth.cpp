@@ -85,7 +85,7 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
 }
 
 // The token loses the owner role as soon as an administrator can sign in with a password. Access to
-// the environment must not give permanent ownership of the site.
+// the environment must not make somebody the permanent owner.
 Result<Principal> Authenticator::owner_by_token() {
   const auto principal = [](bool is_script) {
     const Role role = is_script ? Role::administrator : Role::owner;

@@ -48,9 +48,9 @@ class Authenticator {
   static std::string secret_of(const Request& request);
 
   // Create a browser session and return its secret. The credential is a password, a token or a
-  // link. A valid token is the owner's token while it has the owner role, or the secret of an owner
-  // link. `agent` is the browser's User-Agent. Wrong credentials give 401; a token for scripts
-  // gives 403.
+  // link. The token must be the secret of an owner link, or the owner's token with the owner role.
+  // `agent` is the browser's User-Agent. Return 401 for wrong credentials and 403 for a token for
+  // scripts.
   Result<std::string> session_for_password(const std::string& user, const std::string& password,
                                            const std::string& agent);
   Result<std::string> session_for_token(const std::string& token, const std::string& agent);

@@ -21,7 +21,7 @@ class LoginThrottle {
   // no name.
   Result<void> pass(const std::string& address, const std::string& name,
                     Clock::time_point now = Clock::now());
-  // Call it after a correct attempt. That attempt does not count as a guess.
+  // Call it after a correct attempt. The limits then ignore that attempt.
   void was_right(const std::string& address, const std::string& name);
 
  private:

@@ -12,7 +12,7 @@ struct Accepted {
   std::string value;  // in lower case, without parameters: "gzip", "text/csv", "*/*"
   double quality = 1;
 };
-// Returns the entries of an Accept or Accept-Encoding header. A malformed quality counts as 0.
+// Returns the entries of an Accept or Accept-Encoding header. A malformed quality becomes 0.
 std::vector<Accepted> accepted_values(std::string_view header);
 
 // Returns whether an Accept header accepts this content type. An absent header accepts all types.

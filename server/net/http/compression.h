@@ -39,8 +39,8 @@ class Compressor {
 
 // Compresses texts of at least a kilobyte (JSON, CSV, HTML, …) with a coding that the client
 // accepts. Skips responses that already have a coding or ranges. Skips `no-store` responses because
-// they contain a secret. A streamed response loses its length. The name of the coding is added to
-// the ETag because an ETag identifies one representation. A 304 response gets the tag from
+// they contain a secret. Removes the length of a streamed response. The name of the coding is added
+// to the ETag because an ETag identifies one representation. A 304 response gets the tag from
 // `known_tags` that matches it.
 void compress(Response& response, std::string_view accept_encoding,
               std::string_view known_tags = {});

@@ -35,7 +35,7 @@ std::string_view without_weakness(std::string_view tag) {
   return tag;
 }
 
-// Writes the length before each part, so different lists of parts cannot give the same text.
+// Writes the length before each part, so different lists of parts cannot have the same text.
 void add(std::string& text, std::string_view part) {
   text.append(std::to_string(part.size())).append(":").append(part);
 }
@@ -174,7 +174,7 @@ StateOf state_of_painted_table(const RouteContext& context) {
     std::string text;
     for (const Layer& layer : *layers) {
       add(text, layer.id);
-      if (layer.sequence > 0) models.insert(layer.model_id);  // others were never painted
+      if (layer.sequence > 0) models.insert(layer.model_id);  // only painted layers
     }
     for (const ModelId model : models) {
       const auto room = context.rooms.open(to_string(model), request.role());

@@ -40,7 +40,7 @@ StateOf state_of_model(const RouteContext& context);
 // For routes of records. Returns the stored state of the project that contains the addressed table,
 // or the addressed model and layer.
 StateOf state_of_records(const RouteContext& context);
-// For routes that cover all layers with keys of the addressed table.
+// For routes that read all layers with keys of the addressed table.
 StateOf state_of_painted_table(const RouteContext& context);
 // For the file of a surface image, which never changes.
 StateOf state_of_surface_image(const RouteContext& context);

@@ -13,7 +13,7 @@ constexpr std::size_t kMaxFormFiles = 256;
 
 struct FormFile {
   // The sender's file name with its folders. Does not contain folders outside the current one.
-  // Empty if no other part of the name remains.
+  // Empty if nothing remains of the name.
   std::string filename;
   std::string_view content;  // a part of the body
 };

@@ -209,7 +209,7 @@ Result<void> parse_target(std::string_view target, Request& request) {
       return fail(ErrorCode::malformed, "Duplicate query parameter",
                   "Send '" + *key + "' only once.", *key);
   }
-  // `as` belongs to no route. It selects the cookie.
+  // `as` is not a parameter of the route. It selects the cookie.
   if (const auto as = request.query.find("as");
       as != request.query.end() && as->second == "kiosk") {
     request.as_kiosk = true;

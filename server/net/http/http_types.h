@@ -37,7 +37,7 @@ struct KioskPass {
 };
 
 // The sender of a request. `role` is the role in the addressed project. `by_cookie` is true if the
-// browser added the secret automatically. Calls that change data must then prove their origin.
+// browser added the secret automatically. The server then checks the origin of changes.
 struct Principal {
   std::string user;
   Role role = Role::viewer;
@@ -54,9 +54,9 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 
 struct Request {
   Method method = Method::get;
-  std::string target;                         // as the client sent it, without kMovedMark
+  std::string target;                         // the address from the client, without kMovedMark
   std::string path;                           // decoded, without the query
-  std::vector<std::string> segments;          // of the path, decoded
+  std::vector<std::string> segments;          // the decoded parts of the path
   std::map<std::string, std::string> query;   // decoded
   std::map<std::string, std::string> params;  // values of the parameters in the route's pattern
   Headers headers;                            // names in lower case
@@ -100,7 +100,7 @@ struct Response {
   // server closes the connection, so the client detects the failure.
   using Sink = std::function<bool(std::span<const std::uint8_t>)>;
   struct Stream {
-    std::optional<std::uint64_t> length;  // empty: unknown until the end
+    std::optional<std::uint64_t> length;  // empty: not known before the end
     std::function<bool(const Sink&)> write;
   };
   std::optional<Stream> stream;
@@ -143,8 +143,8 @@ class Respond {
   std::shared_ptr<State> state_;
 };
 
-// The end of the query of some redirects to another node (net/api/node_redirect.h). It belongs
-// to no route.
+// The end of the query of some redirects to another node (net/api/node_redirect.h). No route has
+// this parameter.
 constexpr std::string_view kMovedMark = "moved=1";
 
 // Splits and decodes a request target. Refuses invalid percent escapes, NUL, invalid UTF-8, and

@@ -29,24 +29,24 @@ Result<void> check_host(const Request& request, const std::vector<std::string>& 
 bool is_own_origin(std::string_view origin, std::string_view host,
                    const std::vector<std::string>& allowed, bool by_https);
 
-// Checks that a change with a session cookie comes from the server's own pages. Origin or, if it is
-// absent, Sec-Fetch-Site shows this. Accepts calls with a bearer token. A call without a principal,
-// such as signing in, must not come from a foreign page.
+// Checks that a change with a session cookie comes from the server's own pages. Reads Origin or, if
+// it is absent, Sec-Fetch-Site. Accepts calls with a bearer token. A call without a principal, such
+// as signing in, must not come from a foreign page.
 Result<void> check_same_origin(const Request& request, const std::vector<std::string>& allowed);
 
 // Checks the upgrade to a WebSocket. Browsers always send Origin. Scripts with a bearer token may
 // omit it.
 Result<void> check_upgrade_origin(const Request& request, const std::vector<std::string>& allowed);
 
-// Returns the origin by which the browser reaches this server, without a `/` at the end. It is the
-// allowed origin with the host in the Host header, or else has the scheme of the request.
+// Returns the origin by which the browser reaches this server, without a `/` at the end. This is
+// the allowed origin with the requested host, or else the request's scheme and host.
 std::string own_origin(const Request& request, const std::vector<std::string>& allowed);
 
 // Returns whether the request used TLS to this server, or to a proxy that reports it in
 // X-Forwarded-Proto.
 bool came_by_https(const Request& request);
 // Like `came_by_https`, but also returns true if the allowed origin of the page uses https and a
-// proxy reports nothing. Cookies must then not be sent without https.
+// proxy reports nothing. In this case, cookies require https.
 bool needs_secure_cookie(const Request& request);
 
 }  // namespace strata::net

@@ -19,9 +19,9 @@
 namespace strata::net {
 
 // Queues and runs the requests that read many texels or render images (questions, see
-// Route::is_question). The questions of one user do not delay those of other users. Each user can
-// run only a few questions at a time. The next question is from the user with the fewest running
-// questions. If several users have the same number, it is from the one who has waited longest.
+// Route::is_question). The questions of one user do not delay the questions of others. Each user
+// can run only a few questions at a time. The next question is from the user with the fewest
+// running questions. Among users with the same number, the one who has waited longest is next.
 // Running questions share the processors (domain/people/question_turns.h). Thread-safe.
 class QuestionDesk {
  public:
@@ -43,7 +43,7 @@ class QuestionDesk {
 
   // Ends all current and later questions.
   void end_all(const Error& why);
-  void stop();  // ends all questions and joins
+  void stop();  // ends all questions and joins the threads
 
   std::size_t waiting() const;
   std::uint64_t steps() const { return turns_->steps(); }

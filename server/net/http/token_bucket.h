@@ -41,7 +41,7 @@ class TokenBucket {
     return static_cast<int>(std::ceil((burst_ - tokens_) / per_second_));
   }
 
-  // Returns the token of the last `take`.
+  // Puts the token of the last `take` back into the bucket.
   void give_back() { tokens_ = std::min(burst_, tokens_ + 1); }
 
  private:

@@ -11,8 +11,8 @@ namespace strata::net {
 
 class Authenticator;
 
-// Sends the changes of other nodes to the users of this node, in the same way as its own. Reads the
-// subject of each message, so each user receives only what the user's role can see now.
+// Sends the changes of other nodes to the users of this node, like the changes of this node. Reads
+// the subject of each message, so each user receives only what the user's role can see now.
 class NodeEvents {
  public:
   // All arguments must outlive the object.

@@ -14,7 +14,7 @@ namespace strata::net {
 void tell_table(LiveSockets& sockets, protocol::TableEventEvent event, const Table& table,
                 const std::string& user);
 
-// With more records in one change, one event of the table is sent.
+// If a change affects more records, the server sends one event for the table.
 inline constexpr std::size_t kMaxRecordEvents = 100;
 
 // Notifies open rooms and connected users of changed records. Sends one event per record. Sends one

@@ -23,7 +23,7 @@ struct LayerQuery {
   std::shared_ptr<room::Room> room;
   Layer layer;
   std::optional<std::int64_t> at;  // sequence of the model; empty: now
-  std::int64_t sequence = 0;       // of the state in the response
+  std::int64_t sequence = 0;       // sequence of the state in the response
 
   static Result<LayerQuery> from(const RouteContext& context, const Request& request);
 };

@@ -21,8 +21,8 @@ Result<nlohmann::json> stored_stops(const RouteContext& context, const Model& mo
 // Converts the names of classes in the same way.
 Result<nlohmann::json> stored_classes(const RouteContext& context, const Model& model, Role role,
                                       const std::vector<protocol::TourClasses>& all);
-// Returns 422 for a repeated language, and for a stop without a title in the first language or with
-// texts in a language that the tour lacks. If the stops are not new, the error is at `languages`.
+// Returns 422 for a repeated language, a stop without a title in the first language, and texts in a
+// language that the tour lacks. If the stops are not new, the error is at `languages`.
 Result<void> check_languages(const nlohmann::json& content, bool stops_are_new);
 
 // Returns the tour as Tour of the protocol. Includes only the entities that the role can see.

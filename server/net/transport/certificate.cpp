@@ -20,7 +20,7 @@ Error unusable(const fs::path& file, const std::string& why, const char* option)
           option};
 }
 
-// Without this check, a file without read permission gives the same error as one that is not PEM.
+// Without this check, a file without read permission causes the same error as one without PEM.
 Result<void> check_readable(const fs::path& file, const char* option) {
   std::error_code error;
   if (!fs::is_regular_file(file, error))

@@ -11,8 +11,8 @@ namespace strata::net {
 
 // Checks the socket a few times a second while the server computes the response to a client's
 // request (`Question`). Ends the question when the client has disconnected. Queries the operating
-// system without reading from the socket, so TLS and pipelined requests do not matter. A client
-// that shuts down only its sending side counts as disconnected. Use it on the connection's strand.
+// system without reading from the socket, so it supports TLS and pipelined requests. Also ends the
+// question if a client shuts down only its sending side. Use it on the connection's strand.
 class ClientWatch {
  public:
   // `socket` belongs to a connection that must stay open during the lifetime of this object.

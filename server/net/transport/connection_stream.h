@@ -19,8 +19,8 @@
 namespace strata::net {
 
 // A completion handler with one type for every read and write. With different types, the compiler
-// would compile the TLS code again for each HTTP and WebSocket operation. That took longer than
-// compiling all other units of the module.
+// would compile the TLS code again for each HTTP and WebSocket operation. This took longer than all
+// other units of the module.
 class IoDone {
  public:
   template <class Handler>

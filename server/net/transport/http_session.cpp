@@ -117,8 +117,8 @@ TraceContext trace_of(const http::request<http::empty_body>& head) {
   return continued_trace(first->value());
 }
 
-// Measures the stages of one request. The time to receive the body depends on the client, so it
-// does not count.
+// Measures the stages of one request. The time to receive the body depends on the client, so the
+// total excludes it.
 class RequestTimes {
  public:
   using Clock = std::chrono::steady_clock;
@@ -251,7 +251,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   // GCC 12 destroys some objects twice if they are created inside a co_await expression. The
   // callers of these functions therefore pass named locals by reference.
   asio::awaitable<void> refuse_head(beast::error_code error) {
-    trace_ = continued_trace({});  // not the trace of the previous request
+    trace_ = continued_trace({});  // a new trace
     Response refusal;
     if (error == http::error::header_limit) {
       refusal = problem_response({ErrorCode::head_too_large,
@@ -729,7 +729,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       co_return co_await send(response, Method::get, false);
     }
     auto entry = std::make_shared<Api::LiveEntry>();
-    auto elsewhere = std::make_shared<std::optional<std::string>>();  // set: the model has moved
+    auto elsewhere = std::make_shared<std::optional<std::string>>();  // set if the model moved
     const Work admit = [this, request, entry, elsewhere](const Respond& respond) {
       const TraceScope traced(request->trace.trace);
       auto may_enter = api_.admit_live(*request);
@@ -780,7 +780,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   TokenBucket bucket_;
   const std::string policy_;                  // RateLimit-Policy header for `bucket_`
   std::string peer_;                          // address of the client
-  unsigned http_version_ = 11;                // of the request: 10 or 11
+  unsigned http_version_ = 11;                // HTTP version of the request: 10 or 11
   TraceContext trace_ = continued_trace({});  // of the request
   bool by_https_ = false;  // the request used HTTPS, to this server or to a proxy
   bool handed_over_ = false;

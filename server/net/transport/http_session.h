@@ -10,9 +10,9 @@
 
 namespace strata::net {
 
-// The state that all connections of one server share. A pending response locks `io`, so the server
-// can discard it safely after it has stopped. Connections hold only a weak pointer because `io`
-// owns their coroutine frames.
+// The state that all connections of one server share. A pending response locks `io`, and is dropped
+// if the server has stopped. Connections hold only a weak pointer because `io` owns their coroutine
+// frames.
 struct Connections {
   std::weak_ptr<boost::asio::io_context> io;
   Api& api;

@@ -26,8 +26,8 @@ class Server {
   ~Server();
 
   std::uint16_t port() const;
-  // Stops accepting connections, notifies live clients to reconnect later, finishes the running
-  // requests and joins the threads. The owner of the rooms must drain them afterwards. Idempotent.
+  // Stops accepting connections, closes live connections, finishes the running requests and joins
+  // the threads. The owner of the rooms must drain them afterwards. Idempotent.
   void stop();
 
  private:

@@ -59,7 +59,7 @@ struct ServerOptions {
   std::chrono::milliseconds slow_after{1000};
   Timeouts timeouts;
   LiveLimits live;
-  const app::NodeLease* lease = nullptr;  // of a site with several nodes; null: the server is alone
+  const app::NodeLease* lease = nullptr;          // null: the server runs alone
   const store::ArchiveKeeper* archive = nullptr;  // null: the server has no archive
 };
 

@@ -69,7 +69,7 @@ class WebSocketSession final : public LiveSocket,
     --connections_->api.metrics().open_sockets;
   }
 
-  // Accepts the connection only to say that another node has the model, because browsers do not
+  // Accepts the connection only to send the address of the model's node, because browsers do not
   // follow the redirection of a WebSocket.
   asio::awaitable<void> run_moved(http::request<http::empty_body> request, std::string url) {
     auto self = shared_from_this();  // the coroutine frame keeps the session alive

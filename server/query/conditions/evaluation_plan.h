@@ -39,7 +39,7 @@ struct PlanNode {
   double number = 0;
   std::size_t index = 0;                      // index of the numbers of records
   int source = -1;                            // index of the layer in `sources`
-  std::shared_ptr<const NumberSet> set{};     // for a condition: true if its part is in this set
+  std::shared_ptr<const NumberSet> set{};     // condition: true if its part's value is in it
   std::shared_ptr<const TruthTable> table{};  // for a condition: truth by the bits of the source
   std::vector<PlanNode> parts{};
 

@@ -136,8 +136,8 @@ class Block {
     }
   }
 
-  // Returns the numbers of an expression. A condition gives 1 where it is true, and is unknown
-  // elsewhere.
+  // Returns the numbers of an expression. The number of a condition is 1 where it is true, and
+  // unknown elsewhere.
   Numbers any(const PlanNode& e) const {
     if (!e.is_condition()) return numbers(e);
     Numbers result;

@@ -17,8 +17,8 @@ struct Frame {
   double metres = 1;     // meters in one model unit
 };
 
-// A formula over layers, from split_records. `records` holds the numbers of its parts over records,
-// by index.
+// A formula over layers, from split_records. `records` contains, by index, the numbers of its parts
+// that read records.
 struct BoundExpression {
   Expression expression;
   std::vector<RecordNumbers> records{};
@@ -38,10 +38,10 @@ Result<TexelSelection> select_where(const BoundExpression& condition,
                                     const TexelSelection* within = nullptr);
 
 // Computes the content of a layer of `type` with the resolution of the map. Each surface texel gets
-// the value of the formula, or no value where the formula is unknown. A condition gives 1 where it
-// is true, and no value elsewhere. Values of integer types are rounded to the nearest integer.
-// Gutter texels copy surface texels. Returns the errors of select_where, and an `invalid` error at
-// `type` for a number that the type cannot hold.
+// the value of the formula, or no value where the formula is unknown. For a condition, the value is
+// 1 where the condition is true; other texels have no value. Values of integer types are rounded to
+// the nearest integer. Gutter texels copy surface texels. Returns the errors of select_where, and
+// an `invalid` error at `type` for a number that the type cannot hold.
 Result<TileMap> compute_tiles(const BoundExpression& expression,
                               const std::vector<LayerView>& layers, const mesh::SurfaceMap& map,
                               const Frame& frame, ValueType type, const std::string& field,

@@ -19,8 +19,8 @@ TexelSelection select_connected(const mesh::SurfaceMap& map, const mesh::TexelGr
                                 const TileMap& tiles, std::uint32_t start);
 
 // Selects the texels within `radius` (model units, Euclidean distance) of `place`, the position of
-// `start`. They must be connected to `start` within that distance, which excludes the other side of
-// a thin wall.
+// `start`. Only texels connected to `start` within that distance are selected, not the other side
+// of a thin wall.
 TexelSelection select_near(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                            std::uint32_t start, const glm::vec3& place, float radius);
 

@@ -55,7 +55,7 @@ struct Bin {
   }
 };
 
-// Returns the bins, those with the most pixels first.
+// Returns the bins in descending order of pixels.
 std::vector<Bin> bins_of(const Picture& picture) {
   std::vector<Bin> bins(std::size_t{1} << (3 * kBinBits));
   const std::uint8_t* rgba = picture.rgba.data();

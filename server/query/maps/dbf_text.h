@@ -6,8 +6,8 @@
 
 namespace strata::query {
 
-// Converts the texts of a .dbf file to UTF-8. Their encoding is the one that the .cpg file names
-// ("UTF-8", "1252", "ISO 88591"), otherwise the code page that the .dbf file names ("LDID/87"). If
+// Converts the texts of a .dbf file to UTF-8. The .cpg file contains their encoding ("UTF-8",
+// "1252", "ISO 88591"). Without it, the .dbf file may contain their code page ("LDID/87"). If
 // neither is known, valid UTF-8 is read as UTF-8, and other text as Windows-1252.
 class DbfText {
  public:

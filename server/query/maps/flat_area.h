@@ -19,7 +19,7 @@ struct FlatPolygon {
 };
 
 // Polygons that may have holes and do not overlap, always valid as OGC simple features. Move-only.
-// Every operation throws QuestionEnded when the current question is over, and std::runtime_error
+// Every operation throws QuestionEnded when the current question has ended, and std::runtime_error
 // when GEOS fails.
 class FlatArea {
  public:
@@ -58,7 +58,7 @@ class FlatAreaTree {
   FlatAreaTree(const FlatAreaTree&) = delete;
   FlatAreaTree& operator=(const FlatAreaTree&) = delete;
 
-  // Visits the areas whose bounding boxes intersect that of `area`.
+  // Visits the areas whose bounding boxes intersect the bounding box of `area`.
   void find(const FlatArea& area, const std::function<void(const FlatArea&)>& visit) const;
 
  private:

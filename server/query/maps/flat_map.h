@@ -34,7 +34,7 @@ class FlatMap {
   std::vector<MapArea> areas_;
   glm::dvec2 low_, size_;
   int side_ = 1;
-  std::vector<std::size_t> begins_;     // begin of each cell in `in_cell_`, and the last end
+  std::vector<std::size_t> begins_;     // start of each cell in `in_cell_`, then the last end
   std::vector<std::uint32_t> in_cell_;  // indices of areas, ascending
 };
 

@@ -9,7 +9,7 @@
 
 namespace strata::query {
 
-// The keys of names, from the legend of a layer and from an imported map.
+// Assigns keys to the names in the legend of a layer and in an imported map.
 class KeyNames {
  public:
   // The names are the labels of a categorical palette. Keys in `taken` are in use, even if they

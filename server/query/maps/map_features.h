@@ -30,7 +30,7 @@ std::string number_text(double value);  // shortest text for exactly this number
 
 struct MapFeature {
   using Rings = std::vector<std::vector<glm::dvec2>>;
-  std::vector<Rings> polygons;   // holes are rings like any other
+  std::vector<Rings> polygons;   // each hole is also a ring
   std::vector<MapValue> values;  // sorted like the columns; the last values may be missing
   std::string place;  // position in the file, for messages: "body.features[3]", "Record 4"
 };

@@ -22,9 +22,9 @@ struct MapTiff {
   bool has_numbers = false;
   // true if decode_tiff_picture can read the file: gray, a color table or RGB of up to 16 bits
   bool has_colors = false;
-  bool is_rgb = false;             // its bands are colors
+  bool is_rgb = false;             // true if its bands are colors
   std::optional<WorldFile> world;  // position from the GeoTIFF tags
-  std::optional<double> nodata;    // GDAL's tag
+  std::optional<double> nodata;    // value of GDAL's tag
   std::string crs;                 // such as "EPSG:25830"; empty if not given
   bool in_degrees = false;
 };

@@ -21,7 +21,7 @@ namespace {
 constexpr double kGridOfTexel = 1.0 / 256;  // spacing of the grid for corners at seams
 constexpr double kSimplifiedTexels = 0.5;
 constexpr double kSliverTexels = 1.0 / 64;
-constexpr std::size_t kBytesOfCorner = 400;    // memory of GEOS and the rings, at most
+constexpr std::size_t kBytesOfCorner = 400;    // maximum memory of GEOS and the rings
 constexpr std::size_t kBytesOfTriangle = 110;  // memory to build the rims and the lookup
 
 // Assigns labels to texels. Texels with the same label have one class, and their surface faces the
@@ -45,7 +45,7 @@ class Labels {
                            2 * known->second + (turned ? 1 : 0) + 1;
                      });
     }
-    // Charts extend beyond the texels whose centers they contain, into the texels around these.
+    // Also labels the gutter texels, because a chart covers parts of them.
     mesh::for_each_gutter_texel(map, [&](mesh::SlotTexel gutter, mesh::SlotTexel owner) {
       of_texel_[std::size_t{gutter.slot} * 64 + static_cast<std::size_t>(gutter.texel)] =
           of_texel_[std::size_t{owner.slot} * 64 + static_cast<std::size_t>(owner.texel)];

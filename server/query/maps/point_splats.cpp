@@ -36,7 +36,7 @@ void write(std::map<TileAddress, TileData>& tiles, ValueType type, int x, int y,
       .first->second.write(y % kTileSize * kTileSize + x % kTileSize, bits);
 }
 
-// Writes the values of their owners to the gutter texels of the slot.
+// Writes to each gutter texel of the slot the value of its surface texel.
 void write_gutter(const mesh::SurfaceMap& map, const NearestOfSlot& nearest, std::uint32_t slot,
                   ValueType type, std::map<TileAddress, TileData>& tiles) {
   const glm::ivec2 corner = corner_of(map, slot);

@@ -19,10 +19,10 @@ struct PointSplat {
 constexpr std::uint64_t kMaxDabTexels = 50'000'000;  // limit for all splats of one edit
 
 // Each splat covers the texels within `radius` (model units, Euclidean distance) of its position.
-// They must be connected to the splat across the surface within that distance, which excludes the
-// other side of a thin wall. Where splats overlap, the nearest splat is used, or the first of
-// several at the same distance. The result is the content to write: the valid texels of each tile,
-// gutter included. Returns an `invalid` error if the splats reach more than kMaxDabTexels.
+// Only texels connected to the splat within that distance are covered, not the other side of a thin
+// wall. Where splats overlap, the nearest splat is used, or the first of several at the same
+// distance. The result is the content to write: the valid texels of each tile, gutter included.
+// Returns an `invalid` error if the splats reach more than kMaxDabTexels.
 Result<std::map<TileAddress, TileData>> paint_point_splats(const mesh::SurfaceMap& map,
                                                            const mesh::TexelGraph& graph,
                                                            std::span<const PointSplat> point_splats,

@@ -100,8 +100,8 @@ Result<void> check_dbf(std::span<const std::uint8_t> dbf, std::size_t shapes) {
     return refuse("The .dbf is incomplete: it should contain " + std::to_string(records) +
                   " records of " + std::to_string(record) + " bytes.");
   if (records != shapes)
-    return refuse("The .shp has " + std::to_string(shapes) + " shapes and the .dbf " +
-                  std::to_string(records) + " records: they do not belong together.");
+    return refuse("The .shp has " + std::to_string(shapes) + " shapes and the .dbf has " +
+                  std::to_string(records) + " records: the files do not belong together.");
   const std::uint64_t fields = (header - kDbfHeader) / kDbfHeader;
   if (fields > kMaxMapColumns)
     return refuse("A map can have at most " + std::to_string(kMaxMapColumns) + " attributes.");

@@ -17,11 +17,11 @@ namespace strata::query {
 
 // The layers that are visible where several layers overlap.
 
-enum class Cover { nothing, some, all };  // the part of the layers below that a value hides
+enum class Cover { nothing, some, all };  // how much a value hides of the layers below it
 
 struct LayerCover {
   std::function<Cover(double value)> of;  // called on several threads
-  bool tells_values = false;              // also collect its visible values
+  bool tells_values = false;              // true: also collect its visible values
 };
 
 struct SeenLayer {

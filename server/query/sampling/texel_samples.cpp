@@ -30,10 +30,10 @@ struct CellSum {
   // range of the values
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   glm::dvec3 weighted_position{0};
-  std::vector<std::pair<std::uint32_t, double>> keys;  // one cell has only a few
+  std::vector<std::pair<std::uint32_t, double>> keys;  // one cell has only a few keys
 };
 
-// Texels without an area count only if the cell has no other texels.
+// Texels without an area have an effect only if the cell has no other texels.
 double weight_of(const TexelSample& sample) { return std::max(sample.area_m2, 1e-200); }
 
 void add_key(CellSum& sum, std::uint32_t bits, double weight) {

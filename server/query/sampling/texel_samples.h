@@ -16,7 +16,7 @@ namespace strata::query {
 struct SurfaceTexels {
   LayerView view;
   std::shared_ptr<const mesh::SurfaceMap> map;  // surface map with the resolution of the layer
-  std::optional<TexelSelection> within;         // nothing means the whole surface
+  std::optional<TexelSelection> within;         // empty: the whole surface
   glm::dvec3 origin{0};                         // origin of model space, in world coordinates
   double metres_per_unit = 1;
 };

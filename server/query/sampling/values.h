@@ -54,7 +54,7 @@ std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree
                                                     const glm::dvec3& origin, const Camera& camera,
                                                     int columns, int rows, const LayerView& layer);
 // Returns one byte for each cell of such a grid: 1 if the camera sees a texel of the selection at
-// the center of the cell. If `selection` is null, any surface counts. Counts one step of the
+// the center of the cell. A null `selection` selects the whole surface. Counts one step of the
 // current question for each cell.
 std::vector<std::uint8_t> seen_selection(const mesh::SearchTree& tree, const glm::dvec3& origin,
                                          const Camera& camera, int columns, int rows,

@@ -46,7 +46,7 @@ class VertexColors {
 
  private:
   std::shared_ptr<const mesh::Geometry> geometry_;
-  // by vertex; empty without a photo: the base then has the colors of the scan
+  // colors by vertex; empty if there is no photo, because the base then has the scan's colors
   std::vector<std::array<std::uint8_t, 3>> base_;
   std::vector<DrawnLayer> layers_;  // bottom to top
 };

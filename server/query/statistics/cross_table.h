@@ -19,8 +19,8 @@ constexpr std::size_t kMaxCrossTableSide = 1024;  // limit for the distinct valu
 
 // The true surface area of each pair of values of two layers.
 struct CrossTable {
-  using Key = std::optional<double>;         // nothing if the layer has no value
-  std::vector<Key> rows, columns;            // the values that occur, ascending; nothing is last
+  using Key = std::optional<double>;         // empty if the layer has no value
+  std::vector<Key> rows, columns;            // the values that occur, ascending; the empty one last
   std::vector<std::vector<double>> area_m2;  // indexed by row, then by column
   std::vector<std::vector<std::uint64_t>> texels;
 };

@@ -19,7 +19,7 @@ struct KeyArea {
 };
 
 // Returns the surface area of each key of a layer of records, as in `statistics` but without a
-// limit on the number of keys. Only valid surface texels count, without the gutter. Tiles in
+// limit on the number of keys. Includes only valid surface texels, not the gutter. Tiles in
 // `cache`, which is a cache of this layer, are not summed again.
 std::map<std::int64_t, KeyArea> key_areas(const LayerView& view, const mesh::SurfaceMap& map,
                                           const glm::dvec3& origin, double metres_per_unit,

@@ -16,8 +16,8 @@ namespace strata::query {
 
 // Lengths of borders in model units, along the surface.
 struct Perimeters {
-  double all = 0;  // around all valid texels
-  // around each class, by ValueClasses::of; a border between two classes counts for both
+  double all = 0;  // perimeter of all valid texels
+  // around each class, by ValueClasses::of; a border between two classes is added to both
   std::map<std::uint32_t, double> of_class;
 };
 
@@ -26,8 +26,8 @@ struct Perimeters {
 //
 // A sum of texel edges is up to 41 % too long. By the Cauchy-Crofton formula, the length of a curve
 // is proportional to the number of lines that cross it. Lines through texels in 8 directions are
-// counted. Each line is weighted by its spacing and its share of the directions, both on the
-// surface itself, so stretched texels count with their true size (Boykov and Kolmogorov, "Computing
+// counted. Each line is weighted by its spacing and its share of the directions. Both are measured
+// on the surface, so stretched texels have their true size (Boykov and Kolmogorov, "Computing
 // geodesics and minimal surfaces via graph cuts", ICCV 2003). The error of straight borders is at
 // most 2 %. For areas a few texels wide, and along seams, the error may be about one texel.
 Perimeters measure_perimeters(const LayerView& view, const mesh::SurfaceMap& map,

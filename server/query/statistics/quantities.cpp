@@ -59,7 +59,7 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
   Quantities out;
   CompensatedSum area;
   out.surface_m2 = map.area_total * m2_per_unit2;
-  // ranges are sorted by number, values by value
+  // ranges are sorted by their numbers, and classes by their values
   std::vector<std::pair<double, std::uint32_t>> order;
   for (const auto& [number, sum] : sums)
     order.emplace_back(classes.each ? sum.value : double(number), number);

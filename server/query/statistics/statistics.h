@@ -19,7 +19,7 @@ namespace strata::query {
 struct KeyStatistics {
   std::uint64_t texels = 0;
   double area_m2 = 0;
-  glm::dvec3 centroid{0};                   // world, weighted by area
+  glm::dvec3 centroid{0};                   // world coordinates, weighted by area
   glm::dvec3 bounds_min{0}, bounds_max{0};  // world
   std::optional<std::uint64_t> pieces{};    // if requested: number of connected areas of this key
   // if requested: the perimeter of these areas, along the surface

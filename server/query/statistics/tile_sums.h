@@ -22,8 +22,8 @@ constexpr std::size_t kMaxStatisticsKeys = 4096;
 constexpr int kHistogramBins = 64;
 
 // The contribution of the valid surface texels of one tile to the statistics of a layer, in model
-// units. Sums of two tiles are combined without loss (Chan, Golub, LeVeque 1983), so only the tiles
-// of a stroke are counted again after it.
+// units. Sums of two tiles are combined without loss (Chan, Golub, LeVeque 1983), so after a
+// stroke, only its tiles are summed again.
 struct TileSums {
   std::uint64_t texels = 0;
   CompensatedSum area;

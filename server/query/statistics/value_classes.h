@@ -18,8 +18,8 @@ struct ValueClasses {
   // true if a value at the last limit belongs to the range before it, as at the end of a scale
   bool last_limit_below = false;
 
-  // Returns the bits of the value if each value is a class (-0 counts as 0), otherwise the number
-  // of its range.
+  // Returns the bits of the value if each value is a class (-0 becomes 0), otherwise the number of
+  // its range.
   std::uint32_t of(std::uint32_t bits, double value) const {
     if (each) return value == 0 ? 0 : bits;
     auto limit = std::upper_bound(limits.begin(), limits.end(), value);

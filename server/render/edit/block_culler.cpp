@@ -281,8 +281,8 @@ bool BlockCuller::lies_under(const WindowBox& window, std::uint32_t segment) con
   return distance_to_axis(s, center) <= reach;
 }
 
-// If one segment covers the whole box, the others have no effect. Then removes them from the list
-// and returns true.
+// If one segment covers the whole box, removes the other segments from the list, because they have
+// no effect, and returns true.
 bool BlockCuller::keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const {
   const PixelBox& box = window.box;
   const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};

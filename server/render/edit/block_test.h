@@ -16,10 +16,10 @@ struct BlockTest {
   glm::mat4 clip_from_model{1};
   const ToolPath* path = nullptr;
   const DepthCopy* depth = nullptr;  // null: the stroke also paints hidden surfaces
-  int width = 0, height = 0;         // of the window and of the depth copy
+  int width = 0, height = 0;         // size of the window and of the depth copy
   ToolShape shape = ToolShape::disc;
   const ShapeTexture* texture = nullptr;  // for ToolShape::texture
-  std::optional<FacingLimit> facing;      // only used with `depth`
+  std::optional<FacingLimit> facing;      // used only with `depth`
   DepthBias bias;
   std::span<const glm::vec4> section;  // planes in model space that cut the model open
 };
@@ -34,7 +34,7 @@ using TestBlock = std::uint64_t (*)(const BlockTest& test, const std::uint64_t* 
 
 // The instruction set that a test is compiled for. Results of different sets differ by rounding.
 enum class VectorUnit { plain, avx2, avx512 };
-VectorUnit best_vector_unit();        // returns the best one of this machine
+VectorUnit best_vector_unit();        // returns the best set of this machine
 TestBlock test_block_on(VectorUnit);  // the machine must support it
 
 }  // namespace strata::render

@@ -90,7 +90,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, TouchedTile
   for (const TileAddress tile : edit.tiles)
     if (const PageId page = layer.page(tile); page != shader::kNoPage)
       chunks.insert(page >> shader::kPageChunkShift);
-  if (chunks.empty()) chunks.insert(0);  // nothing to erase, but the texels still count as written
+  if (chunks.empty()) chunks.insert(0);  // nothing to erase; reports the texels
 
   const bool has_shape = stroke.shape == ToolShape::texture;
   const gl::Program& program =

@@ -19,7 +19,7 @@ namespace strata::render {
 struct DispatchedEdit {
   gl::Readback edited;  // an EditedTile for each entry of `tiles`
   std::vector<TileAddress> tiles;
-  std::vector<TileAddress> fresh_tiles;  // those of `tiles` that got new pages
+  std::vector<TileAddress> fresh_tiles;  // the tiles that got new pages
 };
 
 // The result of a dispatch.

@@ -86,7 +86,7 @@ std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const
   const double scale = view_scale(stroke.camera) * 0.5 * stroke.camera.height *
                        std::abs(stroke.camera.projection[1][1]);
   std::vector<double> ws(count, 0);
-  std::vector<std::size_t> distance(count, count);  // to the path point with the used depth
+  std::vector<std::size_t> distance(count, count);  // to the path point whose depth is used
   const auto spread = [&](std::size_t i, std::size_t from) {
     if (distance[from] + 1 < distance[i]) {
       distance[i] = distance[from] + 1;

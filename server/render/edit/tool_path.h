@@ -8,7 +8,7 @@
 
 namespace strata::render {
 
-constexpr std::size_t kMaxPathPoints = 4096;  // in one stroke batch
+constexpr std::size_t kMaxPathPoints = 4096;  // limit for one stroke batch
 
 struct PixelBox {  // in window pixels, origin lower left
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
@@ -39,9 +39,9 @@ double view_scale(const Camera& camera);
 double w_at_depth(const Camera& camera, double depth);
 
 // Returns the radius in window pixels at each path point, for a radius in model units: radius_world
-// · view scale · projection scale / w. The depth under the point gives w. A depth of 1 means that
-// there is no surface. Such a point uses the depth of the nearest path point on the surface, or
-// `fallback_w` if no point is on the surface.
+// · view scale · projection scale / w. The depth under the point determines w. A depth of 1 means
+// that there is no surface. Such a point uses the depth of the nearest path point on the surface,
+// or `fallback_w` if no point is on the surface.
 std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const float> depths,
                                       double fallback_w);
 

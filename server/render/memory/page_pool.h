@@ -64,7 +64,7 @@ class PagePool {
   GpuMemory& memory_;
   std::function<bool()> free_some_;
   std::vector<Chunk> chunks_;  // index: chunk number
-  std::vector<PageId> free_;   // allocated from the back
+  std::vector<PageId> free_;   // the last page is allocated first
 };
 
 }  // namespace strata::render

@@ -54,7 +54,7 @@ class SurfaceMapTextures {
   GpuMemory::Share share_;
   std::size_t total_rows_ = 0;  // rows of 2048 texels
   std::size_t uploaded_rows_ = 0;
-  std::size_t next_buffer_ = 0, uploaded_bytes_ = 0;  // `uploaded_bytes_`: of this buffer
+  std::size_t next_buffer_ = 0, uploaded_bytes_ = 0;  // the next buffer and its uploaded bytes
 };
 
 }  // namespace strata::render

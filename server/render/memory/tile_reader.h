@@ -18,7 +18,7 @@ class TileReader {
   static Result<TileReader> create(const std::filesystem::path& shader_dir,
                                    gl::ReadbackPool& readback);
 
-  static std::size_t bytes_per_tile(const PagePool& pool);  // of a tile in the read-back
+  static std::size_t bytes_per_tile(const PagePool& pool);  // size of a tile in the read-back
   // Allocates memory to read up to `pages` pages at a time. This is the only step of a read that
   // can fail, so call it before the pages are changed.
   Result<gl::Readback> make_room(const PagePool& pool, std::size_t pages) const;

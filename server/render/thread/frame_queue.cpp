@@ -69,7 +69,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
   return pushed;
 }
 
-// Moves a view to the half for acting users or to that for onlookers. A view that changes halves
+// Moves a view to the half for acting users or the half for onlookers. A view that changes halves
 // gets the served time of the last turn in the new half.
 void FrameQueue::enter_half(View& state, bool acting, bool waited) {
   Half& to = half(acting);

@@ -22,7 +22,7 @@ struct FrameTask {
   std::vector<Asker> askers;
   struct Turn {
     bool acting = false;
-    double ms = 0;  // served time of its requester at its turn
+    double ms = 0;  // the requester's served time at the frame's turn
     bool large = false;
   } turn;
 };
@@ -56,8 +56,8 @@ class FrameQueue {
     std::optional<Renderer::Done<SharedFrame>> displaced{};
   };
   Pushed push(FrameRequest request, Renderer::Done<SharedFrame> done);
-  // Returns the next frame, but skips views with a frame in progress. The frame's views then count
-  // as in progress until `finished`.
+  // Returns the next frame, but skips views with a frame in progress. The frame's views are then in
+  // progress until `finished`.
   std::optional<FrameTask> take();
   // Like `take`, but returns only rectangles whose turn precedes all turns in `under_way`, so they
   // may precede whole frames in progress. If only bands of large images are in progress, it also

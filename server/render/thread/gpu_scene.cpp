@@ -102,8 +102,8 @@ Result<void> GpuScene::load() {
   return keep(shade_pass_, ShadePass::create(dir, info_.software));
 }
 
-// Evicts the first available of: pages that no layer uses; depth buffers of cameras that no view
-// has; the least recently used layer; the buffers of the least recently used view.
+// Evicts the first of these that exists: pages that no layer uses; depth buffers of cameras that no
+// view has; the least recently used layer; the buffers of the least recently used view.
 bool GpuScene::evict_one() {
   for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_}) {
     if (pool->drop_empty_chunk()) return true;

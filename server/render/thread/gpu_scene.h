@@ -81,7 +81,7 @@ class GpuScene {
   Result<GpuLayer*> layer(LayerHandle handle);
   Result<View*> view(ViewHandle handle);
   Result<SurfaceImage*> image(SurfaceImageHandle handle);
-  void remove_model(ModelHandle handle);  // with its layers, images and views
+  void remove_model(ModelHandle handle);  // also removes its layers, images and views
   void remove_surface_image(SurfaceImageHandle handle) { images_.erase(handle); }
   void remove_layer(LayerHandle handle) { layers_.erase(handle); }
   void remove_view(ViewHandle handle) { views_.erase(handle); }

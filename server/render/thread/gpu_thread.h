@@ -42,7 +42,7 @@ enum class Lane {
 // The thread that owns the GPU. Ordered jobs precede frames, and frames precede background jobs.
 // While a job waits, jobs of the next kind run, but jobs of one lane keep their order. Frames wait
 // while an ordered job can run and does not yield. After ordered jobs have run for some time,
-// frames get as much time. So users see the first results while many edits run.
+// frames get an equal time. So users see the first results while many edits run.
 class GpuThread {
  public:
   struct Hooks {

@@ -16,7 +16,7 @@ bool is_above(const mesh::ContactShadow& shadow, const Camera& camera, const glm
 }
 
 // A point of the floor is corner + x * along_row + y * along_column, so (x, y, 1) has a linear map
-// to pixels, which has an inverse if the eye is not in the plane of the floor.
+// to pixels. The map has an inverse if the eye is not in the floor's plane.
 glm::dmat3 map_from_pixel(const mesh::ContactShadow& shadow, const glm::dmat4& clip_from_model,
                           int width, int height) {
   const auto row = [](const glm::dvec4& clip) { return glm::dvec3(clip.x, clip.y, clip.w); };

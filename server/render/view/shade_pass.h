@@ -46,8 +46,8 @@ struct ShadeInput {
 
 // Colors a rectangle of a view's frame from its g-buffer (shaders/shade_pass.frag): first the
 // background, then the surface, which the depth test selects. One draw shades all layers whose
-// chunks fit into the texture units. Further layers need further draws over it. Sets all GL state
-// that it needs, and resets scissor and blending.
+// chunks fit into the texture units. Each further draw adds more layers. Sets all GL state that it
+// needs, and resets scissor and blending.
 class ShadePass {
  public:
   // Each chunk uses two texture units, and the pass uses three others. So the pass uses 15 of the

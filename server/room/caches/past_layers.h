@@ -45,10 +45,10 @@ struct PastMoment {
   std::map<TableId, RecordFeatures::SurfaceFeatures> features;
 };
 
-// The past states of an open model, for views that show the model as it was. A worker reads them
-// from the journal. It reads only the tiles that differ from a known state, and shares all others
-// with that state. So a move to another edit reads only the tiles that changed in between. Unused
-// states take at most kKeptBytes of memory, which the ledger counts. Thread-safe.
+// The past states of an open model, for views of an earlier state. A worker reads them from the
+// journal. It reads only the tiles that differ from a known state, and shares all others with that
+// state. So it reads only the changed tiles when a view moves to another edit. Unused states take
+// at most kKeptBytes of memory, which the ledger counts. Thread-safe.
 class PastLayers : public std::enable_shared_from_this<PastLayers> {
  public:
   static constexpr std::size_t kKeptLayers = 24;

@@ -39,10 +39,10 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   void set_model(render::ModelHandle model);
   // Maps can be dropped to free memory, and are baked again on use.
   using Clock = std::chrono::steady_clock;
-  // Returns the time of the last use of the map that has been unused for the longest time.
+  // Returns the time at which the least recently used map was last used.
   std::optional<Clock::time_point> oldest_use() const;
-  // Drops the map that was unused for the longest time. Returns false if there is no map. Call only
-  // while nothing is being painted, because painting needs the map on the GPU.
+  // Drops the least recently used map. Returns false if there is no map. Call only while nothing is
+  // being painted, because painting needs the map on the GPU.
   bool drop_oldest();
   // Drops maps of at least `at_least_bytes` that were unused since `since`. Returns false if there
   // is no such map. Like `drop_oldest`, call it only while nothing is being painted.

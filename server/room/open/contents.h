@@ -20,7 +20,7 @@ LayerState new_state(Layer layer);  // empty and not on the GPU
 
 struct JournalContents {
   std::int64_t last_sequence = 0;
-  std::int64_t epoch = 0;          // of the newest claim of the model (store/nodes/nodes.h)
+  std::int64_t epoch = 0;          // epoch of the model's newest claim (store/nodes/nodes.h)
   std::vector<LayerState> layers;  // with mirrors, without handles
   // By layer: the tiles that differ from `held`.
   std::map<LayerId, std::vector<TileAddress>> differing;

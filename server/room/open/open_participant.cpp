@@ -174,7 +174,7 @@ Result<void> OpenParticipant::show(std::uint32_t view_id, ViewSettings settings)
   else if (!v->past)
     v->past = room_->past_layers().new_place();
   restyle(view_id, *v);
-  // The view did not receive edits while it showed the past.
+  // The view did not receive edits while it showed an earlier state.
   if (returns) v->viewer->changed_everywhere(room_->edits().sequence());
   return {};
 }

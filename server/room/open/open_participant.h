@@ -65,7 +65,7 @@ class OpenParticipant final : public Participant {
   };
   View* view(std::uint32_t view_id, bool make);
   void restyle(std::uint32_t view_id, View& view) const;
-  // The style of a frame, and the edit after which the frame shows the model. nullopt: the newest
+  // The style of a frame, and the edit whose state the frame shows. nullopt: the newest
   // state.
   struct Appearance {
     render::ViewStyle style;

@@ -41,7 +41,7 @@ query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMa
   return selection;
 }
 
-// Returns whether nothing is painted on the layer. Then the answer does not need the surface.
+// Returns whether nothing is painted on the layer. If so, the answer does not need the surface.
 bool is_empty(const query::LayerView& view) {
   return std::ranges::none_of(view.snapshot.tiles,
                               [](const auto& tile) { return tile.second != nullptr; });
@@ -131,8 +131,8 @@ Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::texels_withi
                             static_cast<float>(around.radius));
 }
 
-// The journal reads only the tiles that differ from a state near the requested one. Even for a
-// layer far in the past, these are few.
+// The journal reads only the tiles that differ from a state near the requested one. Even for an old
+// state, there are few such tiles.
 Result<OpenRoom::QueriesPart::ChangedLayer> OpenRoom::QueriesPart::changed_layer(
     const std::string& slug, const ChangedSequences& last) {
   const auto found = STRATA_TRY(room_.state(slug));

@@ -302,7 +302,7 @@ void OpenRoom::move_away(const Error& why) {
 void OpenRoom::stop_saving(const Error& why) {
   run_on(strand_, [&] {
     if (moved_) return;
-    // Comes before the refusals, so clients keep the refused edits until the database answers.
+    // Notifies listeners first, so clients keep refused edits until the database answers.
     if (is_current_.exchange(false))
       participants_part_->tell([](Listener& l) { l.database_reachable(false); });
     pipeline_->stop_saving(why);

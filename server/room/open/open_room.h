@@ -114,7 +114,7 @@ class OpenRoom final : public Room,
   std::size_t take_leave_count();         // number of connections that left since the last call
   const SurfaceMaps& maps() const { return *maps_; }
   // Drops past states that no view shows, or else the texel graphs. If there is neither, drops the
-  // map that was unused for the longest time, but only while nothing is being painted. Blocks.
+  // least recently used map, but only while nothing is being painted. Blocks.
   bool drop_map();
   // Drops maps of very fine layers that were unused for a while.
   bool drop_large_unused_maps(std::chrono::steady_clock::time_point now);
@@ -129,17 +129,17 @@ class OpenRoom final : public Room,
   // Refuses edits with `why` and notifies listeners, until `continue_saving`. Views are still
   // drawn. Does not wait for the database.
   void stop_saving(const Error& why);
-  // Compares the room with the journal. Then accepts edits and notifies listeners, or if another
-  // server has claimed the model, notifies them that it has moved.
+  // Compares the room with the journal. If another server has claimed the model, notifies listeners
+  // that it has moved. Otherwise accepts edits and notifies listeners.
   void continue_saving();
   // Returns whether the room is known to have all edits of the model. False from `stop_saving`
   // until the comparison has succeeded.
   bool is_current() const { return is_current_; }
-  // Gives up the claim, so that another node can open the model. Blocks. Does nothing if this
-  // server is alone, because its claims have no owner.
+  // Gives up the claim, so that another node can open the model. Blocks. Does nothing if the server
+  // runs alone, because its claims have no owner.
   void release();
   ModelId id() const { return model_id_; }
-  std::int64_t epoch() const { return epoch_; }  // of the claim (store/nodes/nodes.h)
+  std::int64_t epoch() const { return epoch_; }  // epoch of the claim (store/nodes/nodes.h)
 
  private:
   class LayersPart;

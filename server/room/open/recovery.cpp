@@ -1,6 +1,6 @@
 // Recovery of an open room. After a lost context, the room makes its copies on the GPU again. If
-// the journal contains more edits than the mirrors, the room reads their content from it again.
-// Both happen while the pipeline is paused and no edit is in progress, so nothing else changes the
+// the journal contains more edits than the mirrors, the room reads the layers from it again. Both
+// happen while the pipeline is paused and no edit is in progress, so nothing else changes the
 // layers. A failed recovery is repeated until the room is closed. Waiting edits are refused after
 // each attempt.
 #include <boost/asio/post.hpp>
@@ -28,7 +28,7 @@ void OpenRoom::paused() { recover(); }
 void OpenRoom::recover() {
   if (recovery_.working || recovery_.closed) return;
   recovery_.timer.cancel();
-  if (recovery_.gpu_lacks_all) {  // comes first, because viewing needs no database
+  if (recovery_.gpu_lacks_all) {  // the first step, because viewing needs no database
     recovery_.working = true;
     services_.renderer.remove_model(model_handle());  // the memory may be too small for two models
     boost::asio::post(

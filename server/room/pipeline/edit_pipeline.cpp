@@ -197,9 +197,9 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
   }
   if (state->epoch != parts_.epoch) return host_->deposed(moved_to({}));
   // A commit may have succeeded although its confirmation was lost. Then the journal is correct,
-  // and the room is behind it. Until the room contains everything in the journal, a repeated
-  // request must not get the result that its edit is saved. So all ids are looked up in the journal
-  // again. (If a look-up began before `verify_` was set, its result is not used.)
+  // and the room lacks edits. Until the room contains everything in the journal, a repeated request
+  // must not get the result that its edit is saved. So all ids are looked up in the journal again.
+  // (If a look-up began before `verify_` was set, its result is not used.)
   if (verifying && state->last_sequence == durable_) verify_ = false;
   const auto is_beyond = [&](const store::JournalRow& row) { return row.sequence > durable_; };
   if (std::any_of(state->known.begin(), state->known.end(), is_beyond)) verify_ = true;
@@ -731,7 +731,7 @@ void EditPipeline::continue_saving() {
   if (closed_ || !not_saving_) return;
   not_saving_.reset();
   compares_ = true;
-  journal_away_ = false;  // the comparison starts at once
+  journal_away_ = false;  // the comparison starts immediately
   step();
 }
 

@@ -44,7 +44,7 @@ class PipelineHost {
   virtual void set_sequence(LayerState& layer, std::int64_t sequence) = 0;
   virtual void content_changed(const LayerState& layer,
                                const std::optional<render::FrameRequest::Box>& box,
-                               std::int64_t sequence) = 0;  // without a box: everywhere
+                               std::int64_t sequence) = 0;  // without a box: the whole surface
   virtual void edit_applied(const Listener::Edit& edit) = 0;
   virtual void edit_saved(const Listener::Edit& edit) = 0;
   virtual void edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) = 0;
@@ -66,8 +66,8 @@ class PipelineHost {
 // their upload to the GPU. The pipeline compares the read-back with the mirror once. The difference
 // determines the revision in the journal, the counts, and the change on screen.
 //
-// The mirrors are always correct: they contain the edits in the journal and those on the way to it.
-// The GPU may still contain older values (`stale_`). It is updated before any other work starts.
+// The mirrors are always correct: they contain the edits in the journal and the pending edits. The
+// GPU may still contain older values (`stale_`). The pipeline updates it before any other work.
 //
 // Only the pipeline enforces the lock of a layer. It checks the lock again before each edit begins,
 // regardless of the source of the edit and the time of the lock. An edit in the journal keeps its
@@ -87,7 +87,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     std::shared_ptr<SurfaceMaps> maps;
     std::shared_ptr<SurfaceLookup> surface;
     const MemoryLedger& memory;
-    std::int64_t epoch;  // of the claim of the model (store/nodes/nodes.h)
+    std::int64_t epoch;  // epoch of the claim of the model (store/nodes/nodes.h)
     ModelId model_id;
     EditTimings& timings;
     std::chrono::milliseconds slow_after;  // see report_edit
@@ -108,8 +108,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   TileMap durable_provisional(const LayerState& layer) const;
 
   // Starts no more work, and notifies the host when no work is in progress. Then the handles and
-  // mirrors of the layers may be changed. Journal entries may still be on their way, but no
-  // rollback happens before `resume`.
+  // mirrors of the layers may be changed. Commits may still be in progress, but no rollback happens
+  // before `resume`.
   void pause();
   // Call while paused, after all data was uploaded from the mirrors.
   void gpu_filled() {
@@ -131,10 +131,10 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void continue_saving();
 
   void refuse_waiting(const Error& why);
-  // Call before the host is destroyed. Refuses waiting and later edits. If the reason is that the
-  // model moved, also refuses at once the edits that wait for their commit: this server must not
-  // acknowledge them, and the client sends them again to the next owner, which finds them if they
-  // are in the journal.
+  // Call before the host is destroyed. Refuses waiting and later edits. If the model moved, also
+  // immediately refuses the edits that wait for their commit, because this server must not
+  // acknowledge them. The client sends them again to the next owner, which looks for them in the
+  // journal.
   void close(const Error& why);
 
  private:
@@ -146,7 +146,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     Work work;
     // is_new means that the journal does not contain the id.
     enum class Lookup { none, requested, is_new } lookup = Lookup::none;
-    // Holds the mirror while the GPU is ahead of it.
+    // Prevents eviction of the layer while the GPU has edits that the mirror lacks.
     std::shared_ptr<const void> hold = {};
     EditTrace trace = {};
   };
@@ -198,8 +198,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
 
   Parts parts_;
   PipelineHost* host_;     // null when the pipeline is closed
-  std::int64_t sequence_;  // of the last edit in the mirrors
-  std::int64_t durable_;   // of the last edit in the journal
+  std::int64_t sequence_;  // sequence of the last edit in the mirrors
+  std::int64_t durable_;   // sequence of the last edit in the journal
   std::deque<Waiting> waiting_;
   bool asking_ = false;  // a look-up in the journal is in progress
   // The last look-up failed, so the next one does not wait for the database.
@@ -213,7 +213,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   std::optional<Error> not_saving_;  // the error for edits until `continue_saving`
   // No work starts before the room was compared with the journal, which may contain more edits.
   bool verify_ = false;
-  // The look-up or the reading in progress began before `stop_saving`, so it proves nothing.
+  // The look-up or the reading in progress began before `stop_saving`, so its result is not used.
   bool lookup_outdated_ = false, reading_outdated_ = false;
   // From `continue_saving` until the room was compared with the journal. A failed comparison is
   // repeated even if no edit waits for it, because viewers must notice that the model moved.
@@ -223,8 +223,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   std::deque<Pending> pending_;  // in the order of sequences
   // By layer: the tiles where the GPU may differ from the mirror.
   std::map<LayerId, std::set<TileAddress>> stale_;
-  // Like `stale_`, for texels that wait for review. The upload is repeated together with the next
-  // one of the layer, and does not delay edits.
+  // Like `stale_`, for texels that wait for review. The upload is repeated together with the
+  // layer's next upload, and does not delay edits.
   std::map<LayerId, std::set<TileAddress>> stale_marks_;
   boost::asio::steady_timer repair_timer_, compare_timer_;
   bool repair_waits_ = false;  // waiting for the timer
@@ -234,7 +234,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     std::string user;
     std::vector<Saved> followers;  // callers that repeated the request
   };
-  std::unordered_map<Uuid, Running> running_;  // by id: waiting and pending edits
+  std::unordered_map<Uuid, Running> running_;  // waiting and pending edits by id
 };
 
 }  // namespace strata::room

@@ -21,8 +21,8 @@ class Crowd {
   Crowd(const CrowdCase& crowd, const Stage& stage, const ServerProcess& server);
   ~Crowd();
 
-  // Runs the actions until each viewer sees its own effects, then for one more second, then for
-  // `seconds`. Returns the figures of this last period (results/streaming-method.md).
+  // Runs the actions until each viewer sees the effect of its actions, then for one second, and
+  // then for `seconds`. Returns the figures of the last period (results/streaming-method.md).
   nlohmann::json measure(double seconds);
 
  private:

@@ -19,7 +19,7 @@ struct CrowdCase {
   bool has_stalled = false;
 
   nlohmann::json json() const;
-  bool paints(int number) const;  // `number`: of an active viewer
+  bool paints(int number) const;  // `number`: the number of an active viewer
 };
 
 }  // namespace strata::bench

@@ -22,8 +22,8 @@ struct CrowdMoment {
 };
 
 // Returns the figures of a period, as results/streaming-method.md describes them. Rates count the
-// frames that arrived within the period. Times belong to the messages that were sent within it,
-// even if the reply arrived later.
+// frames that arrived within the period. Times are measured for the messages that were sent within
+// the period, even if the reply arrived later.
 nlohmann::json crowd_figures(const CrowdCase& crowd, const Viewers& active, const Viewers& idle,
                              const CrowdMoment& begin, const CrowdMoment& end);
 

@@ -15,8 +15,8 @@
 
 namespace strata::bench {
 
-// Replaces the socket. Records the time at which a frame leaves, and acknowledges it like a client
-// that draws immediately.
+// Replaces the socket. Records the time at which it receives a frame, and acknowledges the frame
+// like a client that draws immediately.
 class FrameClient {
  public:
   struct Arrival {

@@ -25,8 +25,8 @@ std::optional<LinkQuality> parse_link(const std::string& text);
 
 // Emulates slow links in user space, without special rights or kernel modules. Viewers connect to
 // `endpoint`, which forwards each connection to the server over a separate line. In each direction,
-// a line sends each byte when its rate allows. The byte arrives half a round trip later, and the
-// order stays the same. The line holds the bytes in transit and kQueueBytes more. Then it stops
+// a line sends bytes at its rate. Each byte arrives half a round trip later, and the order of the
+// bytes does not change. The line holds the bytes in transit and kQueueBytes more. Then it stops
 // reading, so the kernel's buffers fill and the sender has to wait. Packet loss, jitter, TCP's
 // reaction to them, and the handshake are not emulated.
 //

@@ -118,7 +118,7 @@ void LiveClient::send(const protocol::ClientMessage& message) {
 }
 
 asio::awaitable<void> LiveClient::write() {
-  if (std::exchange(is_writing_, true)) co_return;  // two calls came before the first one ran
+  if (std::exchange(is_writing_, true)) co_return;  // another call already writes
   while (!is_lost_ && (!texts_.empty() || camera_)) {
     std::string text;
     if (texts_.empty()) {

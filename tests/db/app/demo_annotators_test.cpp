@@ -83,7 +83,7 @@ class Annotators : public test::RoomTest {
   TileMap before_;
 };
 
-// All three parts of this test use one demo project, because its creation takes long.
+// All three parts of this test use one demo project, because its creation takes a long time.
 TEST_F(Annotators, paint_for_a_lone_visitor_and_take_it_back) {
   paint_and_leave();
   leave_when_a_second_person_comes();

@@ -88,7 +88,7 @@ TEST_F(ListenerOfNode, a_listener_survives_its_connection) {
 
 TEST_F(ListenerOfNode, missed_messages_are_reported) {
   store::NodeMessages::Options options;
-  options.missed_after = std::chrono::seconds(0);  // each read is too late
+  options.missed_after = std::chrono::seconds(0);  // the reader treats every read as too late
   NodeListener listener(
       messages(options),
       {[](const NodeMessage&, std::chrono::nanoseconds) -> Result<void> { return {}; },

@@ -58,7 +58,7 @@ class Import : public ::testing::Test {
   Progress progress_;
 };
 
-// Returns two adjacent squares. `second_square` has the texture coordinates of the second one.
+// Returns two adjacent squares. `second_square` contains the second square's texture coordinates.
 std::string obj_with_uvs(const std::string& second_square) {
   return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
          "vt 0.05 0.05\nvt 0.45 0.05\nvt 0.45 0.45\nvt 0.05 0.45\n" +

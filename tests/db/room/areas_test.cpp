@@ -65,7 +65,7 @@ class RoomAreas : public RoomTest {
   }
 
   // Expects undo to restore the content before the edit, and redo the content after it. Expects
-  // both contents at their sequences, and the later one also after a restart.
+  // to read both contents at their sequences, and the later content also after a restart.
   void expect_durable_and_undoable(const Layer& layer, const room::EditRequest& edit) {
     const TileMap before = tiles(layer.slug);
     const auto answer = send(edit);
@@ -157,7 +157,7 @@ TEST_F(RoomAreas, outlines_are_combined_as_the_sets_of_what_each_of_them_paints)
   Camera other = view();
   other.projection[0][0] *= 0.8;
   const std::vector<Camera> cameras{view(), other, view()};
-  // The tiles that each outline paints alone. The oracle combines them.
+  // The tiles that each outline alone paints. The oracle combines these tiles.
   std::vector<TileMap> alone;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     room::PolygonEdit edit = polygon(paths[i], 7);

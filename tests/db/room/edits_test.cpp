@@ -60,7 +60,7 @@ TEST_F(RoomTest, annas_undo_leaves_what_ben_painted_over_it) {
   auto left = room()->queries().statistics("layer");
   EXPECT_FALSE(left->keys.contains(1));
   EXPECT_EQ(left->keys.at(2).texels, both->keys.at(2).texels);
-  // After Ben's undo the layer is empty. After the redo of both users, the layer is as before.
+  // After Ben's undo the layer is empty. After both users redo, the layer has all texels again.
   ASSERT_TRUE(send(request(layer, room::UndoEdit{}, "ben")));
   EXPECT_EQ(room()->queries().statistics("layer")->texels, 0u);
   ASSERT_TRUE(send(request(layer, room::RedoEdit{}, "anna")));

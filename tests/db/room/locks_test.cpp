@@ -31,8 +31,8 @@ class LockedLayers : public RoomTest {
   }
 };
 
-// Returns one edit of each kind. Each one can change a layer on which Anna made a stroke and undid
-// another.
+// Returns one edit of each kind. Each edit can change a layer on which Anna made two strokes and
+// undid one of them.
 std::vector<std::pair<std::string, decltype(room::EditRequest::edit)>> edits_of(
     const Camera& camera, const TileMap& other) {
   room::StrokeEdit stroke;

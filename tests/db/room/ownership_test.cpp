@@ -1,5 +1,5 @@
-// Two servers over one database, each as a node of the site: a model is open on one of them. The
-// other gets it when the lease of the first one ends, or when the first one drains.
+// Two servers with one database, each as a node of the site: a model is open on one of them. The
+// other node gets the model when the lease of the first node ends, or when the first node drains.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -54,7 +54,7 @@ class Follower : public room::Listener {
     EXPECT_TRUE(changed_.wait_for(lock, kLong, [&] { return !urls_.empty(); }));
     return urls_;
   }
-  // Returns the notifications about the database, when there are `count` of them.
+  // Waits until `count` notifications about the database have arrived, and returns them.
   std::vector<bool> wait_for_reachable(std::size_t count) {
     std::unique_lock lock(mutex_);
     EXPECT_TRUE(changed_.wait_for(lock, kLong, [&] { return reachable_.size() >= count; }));
@@ -102,14 +102,14 @@ class Viewer {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::uint64_t sent_ = 0, drawn_ = 0;
-  std::unique_ptr<room::Participant> participant_;  // the first to end, because it sends frames
+  std::unique_ptr<room::Participant> participant_;  // destroyed first, because it sends frames
 };
 
 class TwoNodes : public RoomTest {
  protected:
   void SetUp() override {
     RoomTest::SetUp();
-    rooms_.reset();  // a server that is alone
+    rooms_.reset();  // the rooms of a server that is not a node
     join(a_);
     join(b_);
     options_.node = a_.id;

@@ -96,9 +96,9 @@ class RoomRecovery : public RoomTest {
  protected:
   void execute(const char* sql) { Connection(dsn_).execute(sql); }
 
-  // Restarts with a GPU that has 20 MiB for one slice of pages of four bytes. That is enough for a
-  // fully painted layer of 2048², but not for one of 4096². The content that is shown and painted
-  // at this time needs no more than that.
+  // Restarts with a GPU that has 20 MiB for one slice of pages of four bytes. This is enough for a
+  // fully painted layer of 2048² and for the content that is shown and painted before the restart,
+  // but not for a fully painted layer of 4096².
   void restart_with_little_gpu_memory(std::initializer_list<Layer> layers) {
     for (const Layer& layer : layers) {
       EXPECT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
@@ -295,7 +295,7 @@ TEST_F(RoomRecovery, a_context_lost_after_the_rooms_are_gone_harms_nobody) {
   std::promise<Result<render::ModelHandle>> answered;
   renderer_->add_model(
       {}, [&](Result<render::ModelHandle> model) { answered.set_value(std::move(model)); });
-  EXPECT_FALSE(answered.get_future().get());  // refused by a thread that still runs
+  EXPECT_FALSE(answered.get_future().get());  // the renderer still runs, and refuses the model
 }
 
 // --- The database

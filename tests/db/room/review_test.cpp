@@ -338,8 +338,8 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
   EXPECT_THAT(seen_by_viewers(), IsEmpty());
 }
 
-// Compares the layer and its pending edits with the journal's rule that the newest edit in force
-// decides. A separate model records the state of the edits.
+// Checks the layer and its pending edits by the journal's rule: each texel has the value of the
+// newest edit in force. A separate model records the state of the edits.
 TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
   struct Stroke {
     std::string user;
@@ -424,7 +424,7 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
         << "seed " << seed;
     EXPECT_TRUE(test::equal(room()->edits().durable_state().provisional[layer_.id], features))
         << "seed " << seed;
-    // Compares the room's own marks with those of the journal.
+    // Compares the room's own marks with the marks of the journal.
     expect_picture_of_journal();
     expect_room_equals_journal(layer_);
   }

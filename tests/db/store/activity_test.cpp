@@ -45,7 +45,7 @@ class ActivityOfAProject : public ::testing::Test {
   void forget_made_layers() {
     ASSERT_TRUE(connection_->query("DELETE FROM activities WHERE kind = 'layer'"));
   }
-  // Saves an edit whose time is `after` later than that of the first edit.
+  // Saves an edit whose time is the time of the first edit plus `after`.
   void edit(const Layer& layer, std::chrono::seconds after, const std::string& user,
             const std::string& op = "stroke", std::optional<Uuid> stroke = {}) {
     JournalEntry entry = Painter(layer, 1).entry(++sequence_, op, user);

@@ -59,7 +59,7 @@ class ArchiveOfACluster : public ::testing::Test {
     auto cluster = Cluster::start(data(), options);
     ASSERT_TRUE(cluster) << cluster.error().detail;
     cluster_ = std::move(*cluster);
-    // what `read_site` of archive_restore.cpp counts
+    // `read_site` of archive_restore.cpp counts the rows of these tables
     for (const char* table : {"projects", "models"})
       run(std::string("CREATE TABLE IF NOT EXISTS ") + table + " (id int)");
     run("CREATE TABLE IF NOT EXISTS edits (number int, "
@@ -82,7 +82,7 @@ class ArchiveOfACluster : public ::testing::Test {
     EXPECT_TRUE(copy) << copy.error().detail;
     return copy ? *copy : ArchiveFolder::Copy{};
   }
-  // Returns a moment after everything that was done and before everything that follows.
+  // Returns a moment after all earlier changes and before all later changes.
   static system_clock::time_point moment() {
     const auto now = std::chrono::ceil<std::chrono::milliseconds>(system_clock::now());
     while (system_clock::now() <= now) std::this_thread::yield();
@@ -230,7 +230,7 @@ TEST_F(ArchiveOfACluster, an_interrupted_copy_is_recognised_and_removed) {
   const auto cancelled = make_copy(archive(), *cluster_, [] { return false; });
   ASSERT_FALSE(cancelled);
   EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
-  // What a killed server leaves: the copy under its name for unfinished copies.
+  // A killed server leaves the copy with its name for unfinished copies.
   const auto whole = copy_now();
   fs::path part = whole.folder;
   part += kUnfinished;
@@ -283,7 +283,7 @@ TEST_F(ArchiveOfACluster, an_archive_belongs_to_one_data_folder) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().title, "Archive of another site");
   }
-  start();  // its own cluster is accepted again
+  start();  // the archive still accepts its own cluster
 }
 
 TEST_F(ArchiveOfACluster, unsuitable_folders_are_refused) {

@@ -148,7 +148,7 @@ class FilesOutside : public ::testing::Test {
   void run(const std::string& statement) {
     ASSERT_TRUE(PgConnection::connect(dsn_)->script(statement));
   }
-  // Deletes what nothing uses at once: a file in the first pass, its row in the second.
+  // Deletes unused files without a delay: the file in the first pass, its row in the second pass.
   void sweep_twice() {
     for (int pass = 0; pass < 2; ++pass) {
       const auto swept = store_->files().sweep(seconds(0), seconds(0));
@@ -160,7 +160,7 @@ class FilesOutside : public ::testing::Test {
                                   image_ = noise(5000, 3);
   test::TemporaryFolder folder_;
   const std::string dsn_ = test::fresh_database();
-  FaultyFiles* faulty_ = nullptr;  // of the last store
+  FaultyFiles* faulty_ = nullptr;  // the folder of the newest store
   std::unique_ptr<Store> store_;
 };
 
@@ -351,7 +351,7 @@ TEST_F(FilesOutside, a_program_without_the_place_stores_in_the_database) {
   const auto plain = test::open_store(dsn_);
   EXPECT_EQ(plain->models().geometry(model.id).error().code, ErrorCode::unavailable);
   EXPECT_EQ(plain->files().check_open().error().code, ErrorCode::conflict);
-  // It cannot check the files, so it does not rely on them.
+  // A store without the folder cannot check the files, so it stores new content in the database.
   const auto second = create(*plain, "copy");
   ASSERT_TRUE(second) << second.error().detail;
   EXPECT_EQ(count("blobs WHERE is_outside"), 0);

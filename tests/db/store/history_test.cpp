@@ -137,7 +137,7 @@ TEST_F(History, a_step_has_the_sums_and_the_value_of_its_batches) {
   EXPECT_THAT(store_->journal().undo_steps(model_.id, "Ada", {{}, {}, 9})->done, IsEmpty());
 }
 
-// Compares the list with the undos, or redos, that follow one another from the same state.
+// From the same state, repeated undos, or redos, must change the edits of the list in its order.
 TEST_F(History, the_steps_are_those_that_undos_and_redos_take_in_this_order) {
   std::mt19937 random(11);
   const auto turn_all = [&](bool redoes) {

@@ -78,7 +78,7 @@ TEST(Jobs, of_a_node_with_a_lease_are_not_lost) {
   StoredJob ended = job_of(32, project);
   ended.node = random_uuid();  // a node that has left
   ASSERT_TRUE(store->jobs().begin(ended));
-  ASSERT_TRUE(store->jobs().begin(job_of(33, project)));  // of a server that was alone
+  ASSERT_TRUE(store->jobs().begin(job_of(33, project)));  // of a server that is not a node
   EXPECT_EQ(store->jobs().begin(running).error().code, ErrorCode::conflict);
 
   auto jobs = by_id(*store->jobs().take_over(10));

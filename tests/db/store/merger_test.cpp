@@ -28,7 +28,7 @@ using Clock = std::chrono::system_clock;
 
 constexpr int kTiles = 2;  // a layer has kTiles × kTiles painted tiles
 
-// What an edit wrote into a tile, kept apart from the journal.
+// The texels that an edit wrote into a tile, recorded independently of the journal.
 struct Written {
   TileMask mask;
   TileData after;
@@ -43,7 +43,7 @@ struct KnownEdit {
   nlohmann::json answer;
 };
 
-// Two layers that several people paint, and everything that the journal must return about them.
+// Two layers that several people paint, and the data that the journal must return for them.
 class Painted {
  public:
   Painted(Store& store, ModelId model, unsigned seed)
@@ -60,7 +60,7 @@ class Painted {
   // Saves `count` edits: batches of strokes, and sometimes a fill, an undo or a redo.
   void paint(int count) {
     for (int i = 0; i < count; ++i) {
-      // A person draws several batches while the others wait, and sometimes they draw at once.
+      // Usually the same person continues. Sometimes another person paints between the batches.
       if (pick(4) == 0) user_ = std::vector<std::string>{"Ada", "Ben", "Cleo"}[pick(3)];
       const std::string user = user_;
       const std::size_t layer = pick(2);
@@ -109,7 +109,7 @@ class Painted {
       put(content, tile, std::move(after));
     }
     (redoes ? entry.enable : entry.disable) = edits;
-    // A merged edit has the sequence of its last batch, and stands for all of them.
+    // A merged edit has the sequence of its last batch, and represents all of its batches.
     const KnownEdit last = *std::ranges::find(known_, edits.back(), &KnownEdit::sequence);
     for (KnownEdit& known : known_)
       if (known.layer == layer.id && known.user == user && known.stroke == last.stroke &&

@@ -40,7 +40,7 @@ class MessagesOfNodes : public ::testing::Test {
   void SetUp() override {
     if (joins_) join();
   }
-  // Changes of `store_` are those of node b. Node a reads its messages.
+  // Node b makes the changes in `store_`. Node a reads the messages about them.
   void join() {
     ASSERT_TRUE(store_->nodes().join(a_));
     ASSERT_TRUE(store_->nodes().join(b_));
@@ -51,7 +51,7 @@ class MessagesOfNodes : public ::testing::Test {
     const auto done = connection.script(sql);
     ASSERT_TRUE(done) << done.error().detail;
   }
-  // Creates a tool over a plain connection, which is that of no node.
+  // Returns the SQL that creates a tool, for a connection that belongs to no node.
   static std::string new_tool(const std::string& name) {
     return "INSERT INTO tool_shapes (name, slug, cells) VALUES ('" + name + "', '" + name +
            "', decode(repeat('00', 8192), 'hex'))";

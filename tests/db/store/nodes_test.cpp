@@ -166,7 +166,7 @@ TEST_F(OwnershipOfModels, a_released_model_is_free_and_keeps_its_epoch) {
   ASSERT_TRUE(nodes_.release(model_.id, 1));
   EXPECT_EQ(epoch(), 1);
   ASSERT_EQ(nodes_.claim(model_.id, b_.id).value(), 2);
-  ASSERT_TRUE(nodes_.release(model_.id, 1));  // of an earlier claim
+  ASSERT_TRUE(nodes_.release(model_.id, 1));  // has no effect on the newer claim
   EXPECT_EQ(nodes_.owner_of(model_.slug).value()->id, b_.id);
   ASSERT_TRUE(nodes_.leave(b_.id));
   EXPECT_EQ(nodes_.claim(model_.id, a_.id).value(), 3);
@@ -314,7 +314,7 @@ TEST_F(OwnershipOfModels, no_two_nodes_ever_commit_in_one_epoch) {
   struct Member {
     NewNode node;
     bool lives = false;
-    std::map<std::size_t, std::int64_t> held{};  // model → epoch that the node believes to have
+    std::map<std::size_t, std::int64_t> held{};  // model → epoch of the node's last claim
   };
   std::vector<Member> members;
   for (const char* url : {"http://n1", "http://n2", "http://n3"}) members.push_back({node_at(url)});
@@ -361,7 +361,7 @@ TEST_F(OwnershipOfModels, no_two_nodes_ever_commit_in_one_epoch) {
         break;
       }
       default: {
-        // The node cannot detect whether it is deposed, or whether its lease is over.
+        // The node cannot detect that it is deposed, or that its lease has ended.
         const auto held = member.held.find(which);
         if (held == member.held.end()) break;
         test::Painter painter(model.layer, 1);

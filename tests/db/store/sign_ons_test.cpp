@@ -233,7 +233,7 @@ TEST_F(SignOnsOfStore, the_audit_log_names_the_provider) {
   EXPECT_EQ(bound[0].details, nlohmann::json({{"issuer", kIssuer}, {"subject", "s1"}}));
   for (int i = 0; i < 2; ++i) ASSERT_TRUE(store_->audit().failed_sign_in({}, "oidc"));
   const auto failed = store_->audit().rows({.action = "sign_in_failed"}).value();
-  ASSERT_THAT(failed, ::testing::Not(IsEmpty()));  // the minute may change between the two
+  ASSERT_THAT(failed, ::testing::Not(IsEmpty()));  // the minute may change between the two sign-ins
   EXPECT_EQ(failed[0].details, nlohmann::json({{"method", "oidc"}, {"provider", "museum"}}));
 }
 

@@ -1,4 +1,4 @@
-// Synchronous standbys: a change counts as saved only when a standby has confirmed it.
+// Synchronous standbys: a change is reported as saved only when a standby has confirmed it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -90,8 +90,8 @@ TEST_F(Standby, the_journal_answers_only_when_a_standby_has_the_edit) {
   ASSERT_TRUE(writer.submit(painter_.paint(1, 1, 4),
                             [&](Result<void> result) { promise.set_value(std::move(result)); }));
   cancel_next_wait();
-  // The edit is in the database of the primary now, and the next attempt finds it there. It must
-  // wait for the standby all the same, also if this wait is canceled, too.
+  // The edit is in the database of the primary now, and the next attempt finds it there. This
+  // attempt must also wait for the standby, even if the test cancels this wait as well.
   cancel_next_wait();
   expect_wait();
   EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 1);

@@ -407,7 +407,7 @@ TEST_F(Tables, records_are_sorted_by_what_they_mean) {
   ASSERT_TRUE(put(table, 1, {{"name", "beta"}, {"period", "1560"}, {"depth", 10}}));
   ASSERT_TRUE(put(table, 2, {{"name", "Alpha"}, {"period", "-0043"}, {"depth", 9}}));
   ASSERT_TRUE(put(table, 3, {{"name", "alpha"}, {"period", "Y-17000~"}}));
-  // The order is that of dictionaries (CLDR): first by letter, then lowercase before uppercase.
+  // The order is the dictionary order (CLDR): first by letter, then lowercase before uppercase.
   EXPECT_EQ(keys(table, {{"name", false}, {"key", true}}), (std::vector<std::int64_t>{3, 2, 1}));
   EXPECT_EQ(keys(table, {{"period", false}}), (std::vector<std::int64_t>{3, 2, 1}));
   EXPECT_EQ(keys(table, {{"depth", false}}), (std::vector<std::int64_t>{2, 1, 3}));

@@ -193,7 +193,7 @@ TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
   auto watcher = PgConnection::connect(cluster_->dsn());
   while (watcher->query("SELECT count(*) FROM pg_stat_activity WHERE wait_event_type = 'Lock'")
              ->integer(0, 0) == 0)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until it has connected
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until the update waits
   const auto refused = narrow->projects().find("default");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::busy);

@@ -281,8 +281,8 @@ def test_sessions(server, story):
 
 
 def test_tokens(server, story):
-    """A script's token has only the rights that both the token and its user have. It opens no
-    session."""
+    """A script's token has only the rights that both the token and its user have. It cannot
+    open a session."""
     ada = story.ada
     anne = story.anne
     made = ada.ok("POST", "/me/tokens", {"name": "nightly", "role": "viewer", "days": 3}).json()

@@ -29,7 +29,7 @@ def refused(*words, told):
 
 
 def moment():
-    """Returns a moment after everything that was done and before everything that follows."""
+    """Returns a moment after all earlier changes and before all later changes."""
     at_ms = math.ceil(time.time() * 1000)
     while time.time() * 1000 <= at_ms:
         time.sleep(0.001)

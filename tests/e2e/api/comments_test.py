@@ -335,7 +335,7 @@ def test_lists(site):
 
 
 def test_live(site):
-    """Participants at the model receive every change. Participants at another model do not."""
+    """Participants at the model receive every change. Other participants receive none."""
     site.server.import_model(folded_grid(fold=0.001), "other.ply", name="Other", unit="mm")
     with LiveClient(site.server, "sheet", token=site.tokens["vera"]) as here, LiveClient(
         site.server, "other", token=site.tokens["vera"]

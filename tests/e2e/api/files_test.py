@@ -1,5 +1,5 @@
-"""Files outside the database, in a folder and in an S3 bucket: they come back bit for bit, damaged
-ones are not sent, they can be moved and checked, and a backup and its restore name them."""
+"""Files outside the database, in a folder and in an S3 bucket: reading them unchanged, refusing
+damaged files, moving and checking them, and their list in a backup and in its restore."""
 import hashlib
 import os
 import subprocess

@@ -236,8 +236,8 @@ def test_nothing_is_seen_without_a_role(server, gus, villa):
 
 
 def test_the_highest_role_counts(server, gus, story):
-    """The highest role counts: the user's own role, or one from a group. The response contains its
-    origin."""
+    """The highest role applies: the user's own role, or a role from a group. The response contains
+    the origin of the role."""
     group = story.group
     diggers = server.ok("POST", "/groups", {"name": "Diggers", "members": ["Gus"]}).json()["id"]
     give(server, "villa", group, "annotator")

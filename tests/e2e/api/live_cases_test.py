@@ -1,5 +1,5 @@
-"""The live connection: participants, invalid clients, slow clients, and the server's orderly
-end."""
+"""The live connection: participants, invalid clients, slow clients, and an orderly stop of
+the server."""
 import glob
 import json
 import os
@@ -92,8 +92,8 @@ def test_upgrade(server):
 
 
 def test_sign_out(server):
-    """Signing out ends the session everywhere. Its connections end, and those of other sessions
-    stay open."""
+    """Signing out ends the session everywhere. Its connections end, and connections of other
+    sessions stay open."""
 
     def sign_in():
         login = server.post(

@@ -83,7 +83,7 @@ def test_shapefile(server, story):
         13,
         None,
     ], values(server, units, *places)
-    # a repeat whose form has another boundary counts as the same request
+    # a repeat whose form has another boundary is the same request
     again = server.ok(
         "POST",
         query(units + "/polygons", attribute="UNIT"),

@@ -62,7 +62,7 @@ def path_of(number, n):
 
 
 def test_strokes_become_one_edit_each(server, camera, story):
-    """The room stays open until the strokes are merged, because the connection does."""
+    """The connection stays open, so the room stays open until the strokes are merged."""
     story.saved, story.states = {}, {0: texels(server, 0)}
     with LiveClient(server, "sheet") as live:
         live.hello()

@@ -18,7 +18,7 @@ M = "/models/sheet"
 L = M + "/layers/cracks"
 SPAN = "00f067aa0ba902b7"
 TRACEPARENT = re.compile(r"00-([0-9a-f]{32})-([0-9a-f]{16})-0[01]")
-# No work counts as slow, because the lines of slow work have other messages.
+# Turns off the detection of slow work, because the lines of slow work have other messages.
 DEBUG = ["--log-format", "json", "--log-level", "info,net=debug,room=debug,store=debug"]
 DEBUG += ["--slow-after", "0"]
 
@@ -201,7 +201,7 @@ def test_an_administrator_changes_the_levels_while_the_server_runs(server):
     assert server.get("/log-levels").json() == only_net
     quiet = new_trace()
     fill(server, 3, headers=header(quiet))
-    line_of(server, quiet, "request")  # later than the line of the edit would be
+    line_of(server, quiet, "request")  # a line of the edit would be before this line
     assert {line["module"] for line in lines_of(server, quiet)} == {"net"}
     server.ok("PUT", "/log-levels", started)
     loud = new_trace()

@@ -83,7 +83,7 @@ def audited(server, action):
 
 
 def with_query(address, **changes):
-    """Changes parameters of an address. None removes a parameter."""
+    """Changes parameters of an address. The value None removes a parameter."""
     parts = urllib.parse.urlsplit(address)
     query = {**dict(urllib.parse.parse_qsl(parts.query)), **changes}
     kept = {name: value for name, value in query.items() if value is not None}
@@ -211,7 +211,7 @@ def test_a_response_counts_once(server):
 
 
 def test_a_response_belongs_to_one_browser(server):
-    """An attacker who sends the own response to other people does not sign them in."""
+    """An attacker who sends their own response to other people cannot sign these people in."""
     attacker, victim = Visitor(server), Visitor(server)
     callback = attacker.callback(attacker.begin(), "mallory")
     assert problem_of(victim.get(callback)) == "expired"
@@ -222,7 +222,7 @@ def test_a_response_belongs_to_one_browser(server):
 
 
 def test_a_stolen_code_is_useless(server):
-    """The code of a victim does not fit the verifier and the nonce of the attacker's sign-in."""
+    """The code of a victim does not match the verifier and nonce of the attacker's sign-in."""
     attacker, victim = Visitor(server), Visitor(server)
     stolen = victim.callback(victim.begin(), "hugo")
     code = dict(urllib.parse.parse_qsl(urllib.parse.urlsplit(stolen).query))["code"]

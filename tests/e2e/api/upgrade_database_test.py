@@ -1,5 +1,5 @@
 """A site changes from PostgreSQL 15 of Debian 12 to PostgreSQL 17 of Debian 13: the plan, the
-rehearsal during work, interruptions, the upgrade, and the way back."""
+rehearsal during work, interruptions, the upgrade, and the return to version 15."""
 import os
 import shutil
 import signal
@@ -132,7 +132,7 @@ def test_it_is_rehearsed_while_people_work(server, story):
 def test_an_interrupted_upgrade_leaves_the_old_database(server, story):
     assert server.stop() == 0
     interrupt(server, signal.SIGKILL)
-    server.start()  # PostgreSQL 15 continues, even if that of pg_upgrade still uses the data
+    server.start()  # PostgreSQL 15 starts, even if the server of pg_upgrade still uses the data
     assert contents(server) == story.before
     assert server.stop() == 0
     code, told = interrupt(server, signal.SIGTERM)

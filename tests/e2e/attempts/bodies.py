@@ -89,7 +89,7 @@ def heads(server, section):
         "No Host, and two",
         {status_of(raw_request(server, each)) for each in hosts},
         400,
-        "each request needs exactly one",
+        "each request needs exactly one Host",
     )
     odd = [
         b"nonsense\r\n\r\n",

@@ -47,7 +47,7 @@ def nobody(server, section):
         "the server accepts no secrets in addresses, because logs contain addresses",
     )
     section.tried(
-        "Upgrade to a live connection without a secret, with an unknown and with an empty one",
+        "Upgrade to a live connection without a secret, with an unknown or an empty secret",
         {
             upgraded(server, token=""),
             upgraded(server, token="x" * 43),
@@ -85,10 +85,10 @@ def replayed_sessions(server, section):
         wait_for(lambda: doors(server, copied) == {401}, "the session's age to count")
 
     ends = [
-        ("its user signed out", "by1", lambda browser, user: browser.ok("POST", "/logout")),
-        ("it was ended in another browser", "by2", other_browser_ends_it),
+        ("sign-out", "by1", lambda browser, user: browser.ok("POST", "/logout")),
+        ("end from another browser", "by2", other_browser_ends_it),
         (
-            "a new password was set",
+            "new password",
             "by3",
             lambda browser, user: join(
                 server,
@@ -97,12 +97,12 @@ def replayed_sessions(server, section):
             ),
         ),
         (
-            "its user was disabled",
+            "disabled user",
             "by4",
             lambda browser, user: server.ok("PATCH", f"/users/{user}", {"disabled": True}),
         ),
         (
-            "its user was deleted",
+            "deleted user",
             "by5",
             lambda browser, user: server.ok("DELETE", f"/users/{user}"),
         ),
@@ -115,7 +115,7 @@ def replayed_sessions(server, section):
         end(browser, user)
         answers |= doors(server, copied)
     section.tried(
-        "A copied session, after "
+        "A copied session after each of these events: "
         + ", ".join(what for what, *_ in ends)
         + " (read, write, upgrade)",
         answers,
@@ -126,7 +126,7 @@ def replayed_sessions(server, section):
     copied = browser.cookie
     expires(browser, "by6")
     section.tried(
-        "The same after its 90 days",
+        "A copied session after its 90 days",
         doors(server, copied),
         401,
         "the server checks the age again after 10 s at the latest",
@@ -171,7 +171,9 @@ def script_tokens(server, section):
         f"UPDATE tokens SET expires = now() - interval '1 second' WHERE id = {made['token']['id']}"
     )
     wait_for(lambda: tried(made["secret"]) == {401}, "the token's age to count")
-    section.tried("The same after its last day", tried(made["secret"]), 401, "as for sessions")
+    section.tried(
+        "A script's token after its last day", tried(made["secret"]), 401, "as for sessions"
+    )
     weak = token(role="viewer")["secret"]
     writes = [
         ("POST", L + "/edits", FILL),

@@ -92,7 +92,7 @@ def archives(server, section):
         "A zip with files named `../../…` or `/tmp/…` (zip slip)",
         "imported, nothing outside" if not os.path.exists(outside) else "outside",
         "imported, nothing outside",
-        "the server unpacks into files with other names; it uses these names only to find companion files",
+        "the server gives unpacked files other names; it uses the names in the zip only to find companion files",
     )
     with PeakGrowth(server) as growth:
         states = {

@@ -31,7 +31,7 @@ def changing(server, section, cookie):
             statuses(there),
             403,
             "with a cookie, Origin must be the server's own",
-            f"{len(there)} calls; {len(answers) - len(there)} of missing things: 404",
+            f"{len(there)} calls; {len(answers) - len(there)} of missing items: 404",
         )
     lookalikes = [
         server.url + ".example",
@@ -174,7 +174,7 @@ def hosts(server, section, cookie):
             headers={"Cookie": cookie, "Origin": server.url, "Host": "evil.example"},
         ).status,
         421,
-        "the same, before all other checks",
+        "the server checks Host before everything else",
     )
     evil = "http://evil.example"
     answers = [

@@ -56,8 +56,8 @@ def let_through(answers):
 
 
 def while_slowed(guess, ask, expected):
-    """Returns the response to `ask` directly after a guess that the limit refused. Repeats both if
-    the limit has allowed a guess in between."""
+    """Returns the response to `ask` directly after a guess that the limit refused. Repeats the
+    guess and `ask` if the limit has allowed a guess in between."""
 
     def tried():
         if not is_slowed(guess()):
@@ -86,16 +86,16 @@ def passwords(server, section):
     right = while_slowed(guess, lambda: sign_in(server, "vera", PASSWORD, "10.1.0.1"), 429)
     assert right.headers["Retry-After"], right
     section.tried(
-        "… and then the right one from that address",
+        "… and then the correct password from that address",
         right.status,
         429,
-        "while there are too many guesses from that address, the user also waits there",
+        "too many guesses from an address also delay the user at that address",
     )
     section.tried(
         "… and at the same time from another address",
         sign_in(server, "vera", PASSWORD, "10.1.0.2").status,
         200,
-        "the limit of a name applies first to the address of the guesses",
+        "the lower limit of a name is separate for each address",
     )
     # The server does not hash tokens, so even a slow machine reaches the limit of the address.
     answers = until_slowed(lambda: token_guess(server, "10.1.0.3") for _ in range(MOST))
@@ -122,7 +122,7 @@ def passwords(server, section):
         lambda n=n: token_guess(server, f"10.9.{n // 250}.{n % 250}, 10.1.0.4") for n in range(MOST)
     )
     section.tried(
-        "… with invented addresses before it in X-Forwarded-For",
+        "… with invented addresses before the real one in X-Forwarded-For",
         statuses(answers),
         {401, 429},
         "only the last address of the header counts, and only from a proxy on this machine",
@@ -258,11 +258,11 @@ def names(server, section):
     ), f"an unknown name takes {unknown:.4f} s, a known one {known:.4f} s"
     bodies = {answer.body for each in tries.values() for _, answer in each}
     section.tried(
-        "Finding names with an account, by the answer or by its time",
+        "Finding out which names have an account, by the answer or by its time",
         f"{told_status(tries)}, {len(bodies)} wording",
         "401, 1 wording",
         "the server also hashes a password for unknown names",
-        f"the fastest of 4: unknown {unknown / known:.1f} times known (limit {FASTEST_SHARE})",
+        f"fastest of 4: an unknown name takes {unknown / known:.1f} times as long as a known one (limit {FASTEST_SHARE})",
     )
 
 

@@ -68,28 +68,28 @@ def private(table):
             "all code that reads layers, columns and files requires the role, without a default",
             f"{of('answered')} answers",
         )
-        not_there = "as for missing things, word for word"  # the function checks each response
+        not_there = "exactly the answer for missing items"  # the function checks each response
         section.tried(
-            "Addresses of the private things, by slug and by id, for reading and changing",
+            "Addresses of private items, by slug and by id, for reading and changing",
             not_there,
             not_there,
             "the server searches only the content that the user can see",
         )
         section.tried(
-            "Their names in conditions, filters, orders, lists, imports",
-            "as for unknown names, word for word",
-            "as for unknown names, word for word",
+            "Names of private items in conditions, filters, orders, lists, imports",
+            "exactly the answer for unknown names",
+            "exactly the answer for unknown names",
             "the server searches only the content that the user can see",
             f"{of('names')} calls",
         )
         section.tried(
             "A picture of the model",
-            "byte for byte as without them" if of("same_picture") == 2 else "another",
-            "byte for byte as without them",
+            "same bytes as without private items" if of("same_picture") == 2 else "another",
+            "same bytes as without private items",
             "the renderer gets only the visible layers",
         )
         section.tried(
-            "The live connection, while curators paint and write them",
+            "The live connection, while curators paint and write private items",
             f"{of('leaked')} secrets, {'only the record’s public cells' if {each['heard'] for each in both} == {'record'} else both}",
             "0 secrets, only the record’s public cells",
             "the server filters each event for each client",
@@ -134,7 +134,7 @@ def sql(reader, section):
         (
             "Changes, after `default_transaction_read_only` is switched off",
             changes,
-            "the rights of the role, not a setting",
+            "the rights of the role prevent changes, independent of this setting",
         ),
         ("Tables of tokens, people, files and texels", secrets, "rights only on views"),
         ("Files and commands of the server's machine", machine, "no such rights"),
@@ -190,7 +190,7 @@ def kiosk(table):
             "the server compares the address with the tour",
         )
         section.tried(
-            "Signing in with it, or accepting an invitation",
+            "Signing in with the link, or accepting an invitation with it",
             statuses(
                 [
                     server.post(
@@ -205,7 +205,7 @@ def kiosk(table):
                 ]
             ),
             {401, 403},
-            "it is not a user's token",
+            "the link is not a user's token",
         )
         as_session = {
             server.get(
@@ -217,13 +217,13 @@ def kiosk(table):
             upgraded(server, token="", cookie="strata_session=" + secret, origin=server.url),
         }
         section.tried(
-            "As the session cookie, or its own cookie without the page's mark",
+            "The link as the session cookie, or as the kiosk's cookie without `as=kiosk`",
             as_session,
             401,
             "each cookie is valid only for its own page",
         )
         section.tried(
-            "Its live connection from a foreign page, to another model",
+            "The kiosk's live connection from a foreign page, or to another model",
             {
                 upgraded(
                     server,
@@ -255,7 +255,7 @@ def kiosk(table):
                 connection.send(message)
                 answers.add(connection.receive_until("problem")["status"])
             section.tried(
-                "Painting, undo, pointing and locks over its live connection",
+                "Painting, undo, pointing and locks over the kiosk's live connection",
                 answers,
                 403,
                 "the server accepts five kinds of messages",
@@ -263,14 +263,14 @@ def kiosk(table):
             server.ok("DELETE", f"/kiosks/{made['id']}")
             connection.until_closed()
         section.tried(
-            "After it was revoked",
+            "The link after it was revoked",
             {
                 server.get(kiosk_site.M, token=secret).status,
                 server.post("/auth/kiosk", {"link": secret}, token=False).status,
                 upgraded(server, token=secret),
             },
             401,
-            "immediately; open screens are disconnected",
+            "the link ends immediately, and open screens are disconnected",
         )
         server.assert_clean_log()
 
@@ -282,20 +282,20 @@ def projects(table):
         guest = Someone(server, "Gus", "guest")
         section.tried(
             "Every address of the contract in a project without a role for the guest, by slug and by id, for reading and changing",
-            "404, as for missing things"
+            "404, as for missing items"
             if nothing_is_seen(server, guest, sites["villa"]) > 120
             else "few",
-            "404, as for missing things",
+            "404, as for missing items",
             "the server checks the project before the handler runs",
             "more than 120 addresses; also lists, uploads and the live connection",
         )
         guest.now("villa", "curator")
         section.tried(
-            "The same as a curator of another project",
-            "404, as for missing things"
+            "The same addresses, as a curator of another project",
+            "404, as for missing items"
             if nothing_is_seen(server, guest, sites["forum"]) > 120
             else "few",
-            "404, as for missing things",
+            "404, as for missing items",
             "a role applies only to its own project",
         )
         server.assert_clean_log()

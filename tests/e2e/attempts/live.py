@@ -65,7 +65,7 @@ def messages(server, section):
 
 
 def frames(server, section):
-    """Sends messages that end the connection, with its code (RFC 6455)."""
+    """Sends messages for which the server closes the connection. Checks its code (RFC 6455)."""
 
     def ended(what, send, expected, keeps):
         with welcomed(server) as connection:
@@ -91,7 +91,7 @@ def frames(server, section):
         )
         ended("An endless message in fragments", fragments, 1009, "4 MiB for all fragments")
     section.tried(
-        "… both in the server's memory",
+        "… memory of the server during both attempts",
         "bounded",
         "bounded",
         "the server allocates nothing for a declared size",
@@ -137,8 +137,8 @@ def floods(server, section):
     assert code in (1008, "cut off"), code
     section.tried(
         "50 000 messages without a pause",
-        "ended, others are served",
-        "ended, others are served",
+        "ended, other clients are served",
+        "ended, other clients are served",
         "500 a second and 1000 at once, then 429; the connection ends with 1008 if refused messages exceed accepted ones by 2000",
         growth.checked(64),
     )
@@ -178,8 +178,8 @@ def floods(server, section):
         assert server.get("//livez").status == 200
     section.tried(
         "6000 queries of a client that reads no answer",
-        "ended or waiting, others are served",
-        "ended or waiting, others are served",
+        "ended or waiting, other clients are served",
+        "ended or waiting, other clients are served",
         "4096 answers or 16 MiB wait at most, then the connection ends with 1013; it also ends if a message cannot be sent within 60 s",
         growth.checked(64),
     )

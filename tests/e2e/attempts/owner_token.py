@@ -47,7 +47,7 @@ def attempts(table, site):
             {"invitation": secret_of(invitation), "password": PASSWORD},
         )
         section.tried(
-            "Once an administrator has a password: changes of accounts, roles, tokens and passwords with it",
+            "After an administrator has a password: changes of accounts, roles, tokens and passwords with the token",
             statuses(server.request(*call, token=server.token) for call in RIGHTS),
             403,
             "it is then a token for scripts with the role administrator",

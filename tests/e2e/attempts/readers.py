@@ -65,7 +65,7 @@ def lists(server, section, viewer):
         "Lists of 1900 items in a condition, as a viewer",
         statuses(answers),
         200,
-        "lists are sets, and a condition over bytes is a table: the time for a texel does not depend on their length",
+        "lists are sets, and a condition on bytes is a lookup table: the time for a texel does not depend on the length of a list",
     )
 
 
@@ -115,7 +115,7 @@ def beside(server, section, viewer):
         "Dozens of such queries of one user: another user's queries at the same time",
         statuses(asked),
         200,
-        "users take turns by the time that their queries took, with at most two queries of a user at once",
+        "the user whose queries have used the least time is next, and at most two queries of a user run at once",
     )
     refused = []
     for link in links:
@@ -125,7 +125,7 @@ def beside(server, section, viewer):
         except BlockingIOError:
             pass
     section.tried(
-        "The same: further queries of the first user",
+        "Dozens of such queries of one user: further queries of the same user",
         set(refused) - {200},
         429,
         "at most 32 queries of a user wait",
@@ -195,7 +195,10 @@ def pictures(server, section, viewer):
     )
     steps_after(server, links)
     section.tried(
-        "The same: their client disconnects", "ended", "ended", "the server stops between two bands"
+        "Six such pictures whose client disconnects",
+        "ended",
+        "ended",
+        "the server stops between two bands",
     )
 
 

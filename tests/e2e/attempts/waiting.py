@@ -16,8 +16,8 @@ from support.meshes import folded_grid
 from support.process_memory import PeakGrowth
 from support.strata_server import LONG_S, StrataServer, wait_for
 
-# The server's options for these attempts, in seconds. The results in the table are those of the
-# defaults.
+# The server's options for these attempts, in seconds. The table lists the results for the default
+# options.
 TRIED_WITH = {"head-timeout": 2, "idle-timeout": 4, "stall-timeout": 3, "recheck-every": 1}
 LATE_S = 45  # the tolerance for a busy machine; less than most of the default limits
 CONNECTIONS = 2048
@@ -302,7 +302,7 @@ def plain(table):
             )
             cut(
                 section,
-                "A body that stops, of a refused call",
+                "A body that stops, in a call that is refused",
                 refused.result(),
                 "stall-timeout",
                 60,
@@ -345,8 +345,8 @@ def plain(table):
             assert took <= 10 + LATE_S, took
             section.tried(
                 f"{CONNECTIONS + 100} silent connections from one address",
-                "those above 2048 are closed, room after 10 s",
-                "those above 2048 are closed, room after 10 s",
+                "connections above 2048 are closed, new ones are possible after 10 s",
+                "connections above 2048 are closed, new ones are possible after 10 s",
                 f"{CONNECTIONS} connections in total, **no limit for each address** (see above)",
                 f"{round(took)} s (limit {10 + LATE_S}); {memory}",
             )

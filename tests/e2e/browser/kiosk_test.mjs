@@ -478,7 +478,7 @@ test("without its server the tour goes on with stored pictures", async () => {
   await begin.tap();
   await button("Next").waitFor();
   await server.signal("SIGTERM");
-  sign = page.getByText("Still pictures for a moment");
+  sign = page.getByText("Only still pictures at the moment");
   await wait_for(async () => (await pass(2), await sign.count()), "the sign", 200);
   picture = page.locator("strata-kiosk-stage img");
   is_loaded = () =>

@@ -1,5 +1,5 @@
 // Measuring on a surface with a known shape, a ridge like a roof. Straight lengths, lengths along
-// the surface, heights, areas and the profile equal those of the roof. The tests use mouse,
+// the surface, heights, areas and the profile equal the values of the roof. The tests use mouse,
 // keyboard and touch, and also the page of a viewer.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

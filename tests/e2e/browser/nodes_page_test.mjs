@@ -11,7 +11,7 @@ import { unsaved_ids } from "../support/js/unsaved.mjs";
 
 const kModel = "demo-pot";
 const words = texts_of("en");
-// nginx answers for a node that has ended
+// nginx sends these responses for a node that has ended
 const kOfLostNode = [...kOfLostServer, "502", "503", "504"];
 
 const history = async () =>

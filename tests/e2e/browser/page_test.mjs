@@ -1,6 +1,6 @@
-// The page with one user: the cursor shows the area that a click paints. Keys have no effect behind
-// a question, and do not move the camera during a stroke. Navigation loses no edits, and changes by
-// others are not overwritten.
+// The page with one user: the cursor shows the area that a click paints. Keys have no effect while
+// a question is open, and do not move the camera during a stroke. Navigation loses no edits, and
+// changes by others are not overwritten.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, has_hue, kOfLostServer, rgb } from "../support/js/browser.mjs";

@@ -1,5 +1,5 @@
 // The number of bytes that a browser loads before it first shows a page. The test counts the bytes
-// of the gzip files, although those of Brotli are smaller, because browsers accept only gzip over
+// of the gzip files, although the Brotli files are smaller, because browsers accept only gzip over
 // plain HTTP.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, statSync } from "node:fs";

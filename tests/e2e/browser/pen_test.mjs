@@ -117,8 +117,8 @@ test("pressed half as hard the pen paints a narrower line, and as wide as ever w
 test("away with the pen: two fingers move the model, one turns it, and neither paints", async () => {
   await pen("mouseMoved", [-0.02, 0.5]); // the pen is over the tools
   painted = await edits();
-  // The page decides how long the pen counts as present, so the fingers repeat the gesture until
-  // the page reacts.
+  // The page ignores fingers for some time after the last event of the pen, so the fingers repeat
+  // the gesture until the page reacts.
   const moves = (gesture) => async () => {
     const from = await camera();
     await gesture();

@@ -38,7 +38,7 @@ function task(name, most, walk, needs = null) {
   });
 }
 
-/** The actions of a person, which count as steps. */
+/** The actions of a person. Each action is one step. */
 function hand(desk) {
   const { page } = desk;
   const counted =

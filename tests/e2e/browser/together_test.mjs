@@ -47,7 +47,7 @@ function listen(who) {
       ({ payload }) => {
         if (typeof payload !== "string") return;
         const message = JSON.parse(payload);
-        // When the page comes to rest, it sends the last camera again. The server need not draw
+        // When the view stops, the page sends the last camera again. The server need not draw
         // this camera, so a frame may still have the earlier number.
         if (message.op === "camera")
           message.drawn_from =

@@ -174,7 +174,7 @@ test("its link leads there in somebody else's browser", async () => {
   link = await ada.page.evaluate(() => navigator.clipboard.readText());
   assert.equal(link, `${server.url}/models/${id}#view=west-wall`);
   await bea.page.goto(`${server.url}/`);
-  // the notice leaves after some seconds, so it is awaited from the beginning
+  // the notice closes after some seconds, so the test waits for it from the beginning
   const told = notice(bea, words.kept_views.shown("West wall")).getByText("The breaks of the rim");
   await Promise.all([told.waitFor(), bea.page.goto(link)]);
   await bea.drawn();

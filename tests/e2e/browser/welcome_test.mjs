@@ -59,8 +59,8 @@ async function open_model(who) {
 }
 
 /**
- * Checks that no introduction starts. It would have started by then, because the requests after the
- * first frame have responses.
+ * Checks that no introduction starts. The requests after the first frame have responses, so the
+ * page would already show an introduction.
  */
 async function offers_nothing(who) {
   await who.page.getByRole("button", { name: words.model.help, exact: true }).click();

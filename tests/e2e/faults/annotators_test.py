@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Users with different cameras paint one layer and are disconnected at random. No edit is lost or
-doubled. The texels equal those of a serial replay of the acknowledged edits on a new server, in the
-order of their sequence.
+doubled. The texels equal the result of a serial replay of the acknowledged edits on a new server,
+in the order of their sequence.
 
 annotators_test.py [--seconds 600] [--seed N] [--people 8] [--turning 4] [--model pot|FILE]
 [--json FILE]
 
 Each user signs in and has a separate view. The users paint strokes, polygons and fills, undo and
-redo, over the live connection and over HTTP. The test cuts off each connection after a few seconds
-to tens of seconds: by a normal end, a reset or an incomplete message, or the connection stays open
-while the user already has the next one. On the new connection, the user repeats, with the same ids,
+redo, over the live connection and over HTTP. After a few seconds to tens of seconds, the test ends
+each connection normally, with a reset or with an incomplete message, or leaves it open while the
+user opens the next connection. On the new connection, the user repeats, with the same ids,
 all edits that are not known to be durable, and sometimes durable edits too. The printed times and
 processor seconds, also in FILE, do not affect the result."""
 import argparse

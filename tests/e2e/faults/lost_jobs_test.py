@@ -1,5 +1,5 @@
-"""Jobs that a restart of the server ends. Every user who could see them reads the outcome, no
-failed job is reported as a success, and no data remain.
+"""Jobs that a restart of the server ends. Every user who could see these jobs can read their
+outcome, no failed job is reported as a success, and no data remain.
 
 The server is killed, or stopped in the normal way, while an import runs and another one waits. It
 is also killed several times, at different moments of an import. The reference is then the list of

@@ -1,5 +1,5 @@
 """Pages at one node receive the changes that other nodes make: tables, records, comments, tools and
-rights. Each page receives only what its user may see."""
+rights. Each page receives only the content that its user may see."""
 import time
 
 import pytest
@@ -15,7 +15,7 @@ TABLE = "/tables/finds"
 
 @pytest.fixture(scope="module")
 def site():
-    # Connections are not checked again by themselves, so a test sees only the effect of messages.
+    # The nodes do not check connections at intervals, so only messages can end a connection.
     with Site(2, options=("--recheck-every", "3600")) as started:
         yield started
 

@@ -168,7 +168,7 @@ def test_a_redirected_key_is_free_for_the_owner(site, model):
     owner, other = owner_and_other(site, model)
     key, before = str(uuid.uuid4()), len(history_ids(site, model))
     assert edit_at(other, model, key).status == 307
-    assert edit_at(other, model, key, value=3).status == 307  # another body: nothing was stored
+    assert edit_at(other, model, key, value=3).status == 307  # another body: the key is still free
     done = edit_at(owner, model, key)
     assert done.status == 200, done
     assert edit_at(owner, model, key).json() == done.json()
@@ -296,7 +296,7 @@ def test_an_owner_that_is_killed_is_replaced_after_its_lease(site, model):
     )
     assert (gone["state"], gone["lease_s"], gone["models"]) == ("lost", 0, []), gone
     owner.start()
-    assert edit_at(owner, model).status == 307  # it does not take the model back
+    assert edit_at(owner, model).status == 307  # it does not claim the model again
 
 
 def test_a_frozen_owner_acknowledges_nothing_when_it_continues(site, model):

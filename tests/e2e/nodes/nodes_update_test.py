@@ -19,7 +19,7 @@ from support.strata_server import wait_for
 
 SEED = int(os.environ.get("STRATA_SEED", "1"))
 
-# Older programs still insert into `edits`, and do not know the column.
+# Programs of the older version still insert into `edits`, without a value for the new column.
 MIGRATION = """-- migrate:up
 -- readable-from: {newest}
 ALTER TABLE edits ADD COLUMN of_next_version text;

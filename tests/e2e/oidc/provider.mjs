@@ -40,7 +40,7 @@ const provider = new Provider(issuer, {
     accountId: sub,
     claims: () => ({ sub, preferred_username: sub, ...people.get(sub) }),
   }),
-  // People agree without a question.
+  // Grants access without asking the person.
   async loadExistingGrant({ oidc }) {
     const grant = new oidc.provider.Grant({
       clientId: oidc.client.clientId,

@@ -13,7 +13,7 @@ from support.live_client import AWAY, LiveClient, Refused
 from support.live_line import WAYS, Line
 
 MOST_WAITING = 16  # messages that one user has sent and that are not durable
-MOST_ATTEMPTS = 1000  # for a message that the server refuses for lack of space
+MOST_ATTEMPTS = 1000  # to send a message while the server has no space for it
 TURNS_EVERY_S = 0.1
 VALUES = [1, 2, 3, 4, 5, 6, 255]
 

@@ -81,13 +81,13 @@ class Connections:
 
 
 class Times:
-    """The strokes of one painter: when each began, and when it was saved."""
+    """The times at which each stroke of one painter began and was saved."""
 
     def __init__(self):
         self.strokes = []
 
     def first_since(self, begun):
-        """Returns when the first stroke that began later was saved, or None."""
+        """Returns the time at which the first stroke that began later was saved, or None."""
         return next((saved for start, saved in list(self.strokes) if start > begun), None)
 
 
@@ -257,7 +257,7 @@ class ClusterSite:
 
     def leave_commits_unconfirmed(self, primary):
         """Stops the replication of the primary, and then makes it write commits that no standby
-        has. So its PostgreSQL must be rewound when it returns."""
+        has. So pg_rewind must repair its PostgreSQL when it starts again."""
         for pid in self.cluster.psql(primary, "SELECT pid FROM pg_stat_replication").split():
             os.kill(int(pid), signal.SIGSTOP)
         self.cluster.psql(

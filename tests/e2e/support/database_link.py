@@ -30,7 +30,7 @@ class DatabaseLink:
         self.flows.set()
 
     def close(self):
-        """Accepts no more connections. Those that exist end with the node or with PostgreSQL."""
+        """Accepts no more connections. Open connections end with the node or with PostgreSQL."""
         self.mend()
         # wakes the thread, which would otherwise keep the socket open
         self.listener.shutdown(socket.SHUT_RDWR)

@@ -15,7 +15,7 @@ LAST_RECTANGLE = 4
 
 
 class Refused(Exception):
-    """The upgrade was refused. `status` is that of the response."""
+    """The upgrade was refused. `status` is the status of the response."""
 
     def __init__(self, status, body):
         super().__init__(f"{status} {body[:300]!r}")

@@ -110,8 +110,8 @@ class SharedPostgres:
         self.process.wait()
 
     def restart(self):
-        """Starts PostgreSQL after `kill`, and returns when it answers. It refuses to start while
-        processes of the killed one remain."""
+        """Starts PostgreSQL after `kill`, and returns when it answers. PostgreSQL refuses to start
+        while processes of the killed server remain."""
 
         def answers():
             if self.process.poll() is not None:
@@ -307,8 +307,8 @@ class Site(Requests):
 
 
 class NodeHttpPainter(HttpPainter):
-    """Sends each edit to a random node, with the same key until it is saved. Follows one
-    redirection in two, so nodes that do not have the model get many edits."""
+    """Sends each edit to a random node, with the same key until it is saved. Follows
+    about half of the redirections, so nodes that do not have the model get many edits."""
 
     TRY_AGAIN = (307, 429, 503)
     node = None  # the node to which the last response redirected

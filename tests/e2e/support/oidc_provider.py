@@ -69,8 +69,8 @@ class OidcProvider:
 
 
 class Visitor:
-    """A browser that opens the pages of Strata and of the provider. Each browser has an address of
-    its own, because the server limits the sign-ins from one address."""
+    """A browser that opens the pages of Strata and of the provider. Each browser has a separate
+    address, because the server limits the sign-ins from one address."""
 
     made = 0
 
@@ -117,8 +117,8 @@ class Visitor:
         return answer.headers["Location"]
 
     def callback(self, address, person):
-        """Signs the person in at the provider; None refuses. Returns the address at Strata that the
-        provider redirects to."""
+        """Signs the person in at the provider; with None, refuses the sign-in. Returns
+        the address at Strata to which the provider redirects."""
         self.cookies.pop(urllib.parse.urlsplit(address).netloc, None)  # forgets the last person
         for _ in range(10):
             answer = self.get(address)

@@ -13,7 +13,7 @@ SERVE = os.path.join(ROOT, "tests", "e2e", "s3", "serve")
 
 
 class S3Server:
-    """Has the bucket `strata`. `environment` has its keys."""
+    """Has the bucket `strata`. `environment` contains the keys of the bucket."""
 
     environment = {
         "AWS_ACCESS_KEY_ID": "museum:strata",
@@ -58,6 +58,6 @@ class S3Server:
             return answer.read()
 
     def replace(self, key, content):
-        """Changes an object without the knowledge of Strata."""
+        """Changes an object directly in the store, as another program does."""
         request = urllib.request.Request(f"{self.unchecked}/{key}", data=content, method="PUT")
         urllib.request.urlopen(request, timeout=LONG_S).close()

@@ -1,6 +1,6 @@
 """Runs three nodes behind nginx, with the project's example of a configuration, for tests in
 JavaScript (js/nodes.mjs). Reads one command per line, and answers each with a line of JSON. Ends
-with the input."""
+at the end of its input."""
 import json
 import os
 import signal

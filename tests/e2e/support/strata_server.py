@@ -24,8 +24,8 @@ IN_MEMORY = "/dev/shm"
 OFTEN = ["--recheck-every", "1"]  # tests do not wait for the default interval
 ROOM_BYTES = 8 << 30  # enough for several concurrent tests, one of which writes gigabytes
 
-# Requests that the server refuses for tokens of scripts. The owner's token counts as such a token
-# once an administrator has a password.
+# Requests that the server refuses for tokens of scripts. It also refuses them for the owner's
+# token once an administrator has a password.
 OF_ACCOUNTS = re.compile(r"/(users|groups|me/)|/projects/[^/]+/(members|groups)(/|$)|.*/kiosks$")
 
 

@@ -191,7 +191,7 @@ def fillings(path, words_of):
 
 
 def queries(server, path, operation):
-    """Yields no query first, then each parameter with each value from the contract."""
+    """Yields an empty query, then each parameter with each value from the contract."""
     parameters = [
         server.contract._resolve(each)
         for each in operation.get("parameters", [])

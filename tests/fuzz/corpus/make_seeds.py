@@ -496,7 +496,7 @@ COLUMN_VALUE = {
         ("keys", 10, 1, "3; 1 2"),
     )
 }
-# The first byte selects the reader of fuzz_sign_on.cpp. The token is that of RFC 7515, A.3.
+# The first byte selects the reader of fuzz_sign_on.cpp. The token is the example in RFC 7515, A.3.
 SIGN_ON = {
     "token": b"\0eyJhbGciOiJFUzI1NiJ9.eyJpc3MiOiJqb2UiLA0KICJleHAiOjEzMDA4MTkzODAsDQogImh0dHA6Ly9leGFt"
     b"cGxlLmNvbS9pc19yb290Ijp0cnVlfQ.DtEhU3ljbEg8L38VWAfUAqOyKAM6-Xx-F4GawxaepmXFCgfTjDxw5djxLa8IS"

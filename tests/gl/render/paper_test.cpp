@@ -39,8 +39,8 @@ std::optional<Scene> load_scan(const std::string& name) {
 }
 
 // Returns a camera around the model. The paper's bias is fixed in window depth, so its effect
-// depends on the near and far planes. These planes are those of a viewer that does not fit them to
-// the model. With them, a bias of 2e-4 is about 0.7 % of the model's radius.
+// depends on the near and far planes. These planes have the values of a viewer that does not
+// adapt them to the model. With these planes, a bias of 2e-4 is about 0.7 % of the model's radius.
 Camera random_camera(const mesh::Geometry& geometry, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const glm::dvec3 center = geometry.origin + glm::dvec3(geometry.box_min + geometry.box_max) * 0.5;
@@ -66,9 +66,9 @@ struct Dab {
   double x, y, radius;
 };
 
-// Whether rounding of floats and of packed positions decides about a texel. The texel is then near
-// the tool's edge, near a pixel's border (which selects the depth), or near the threshold of the
-// depth test.
+// Returns whether the rounding of floats and packed positions can change the result for a texel.
+// Such a texel is near the tool's edge, near a pixel's border (which selects the depth), or near
+// the threshold of the depth test.
 bool within_rounding(const Scene& scene, const Dab& dab, const std::vector<float>& depth,
                      const glm::vec3& position) {
   const Camera& camera = dab.camera;

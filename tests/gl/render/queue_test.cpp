@@ -70,7 +70,7 @@ TEST_F(FrameTurns, the_latest_request_of_a_view_wins_and_inherits_what_was_to_be
   ASSERT_TRUE(taken);
   EXPECT_EQ(taken->request.width, 20);
   EXPECT_EQ(*taken->request.changed, (Boxes{kOther, kBox}));
-  // If a waiting request is for the complete frame, the request that replaces it is too.
+  // A request that replaces a request for the complete frame is also for the complete frame.
   queue.finished(*taken, 1);
   push(queue, whole(1, 10));
   push(queue, part(1, {kOther}, 20));

@@ -39,8 +39,8 @@ int count(const render::StrokeOutcome& outcome, bool outer) {
   return count;
 }
 
-// Whether a color belongs to the inside of a cut solid: the ground color, the ink color or a
-// mixture.
+// Returns whether a color belongs to the inside of a cut solid: the ground color, the ink color or
+// a mixture of both.
 bool is_inside(const std::array<int, 3>& color) {
   const double ink = double(kInside[0] - color[0]) / (kInside[0] - kInk[0]);
   for (std::size_t i = 0; i < 3; ++i)

@@ -438,7 +438,7 @@ TEST_F(StreamViewer, after_a_lost_context_everything_comes_again) {
   std::promise<void> lost;
   renderer_->on_context_lost([&lost] { lost.set_value(); });
   renderer_->lose_context_for_test();
-  view->set_camera(2, camera(0.3), false);  // fails or is drawn, but the viewer must not stop
+  view->set_camera(2, camera(0.3), false);  // the frame may fail, but the viewer must not stop
   ASSERT_EQ(lost.get_future().wait_for(kPatience), std::future_status::ready);
   load();
   view->reset_model(model_, {styles(), {}, {}, {}});

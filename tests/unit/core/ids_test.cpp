@@ -12,7 +12,7 @@ namespace {
 
 // The purpose of the types is that none of these conversions compiles. A plain number that is known
 // only at run time does not compile either, because the constructor for plain numbers is consteval.
-// No type trait can check that.
+// No type trait can check the behavior of a consteval constructor.
 static_assert(!std::is_convertible_v<LayerId, TableId>);
 static_assert(!std::is_constructible_v<LayerId, TableId>);
 static_assert(!std::is_convertible_v<LayerId, std::int64_t>);

@@ -251,8 +251,8 @@ TEST(mesh_atlas, refuses_more_pieces_than_texels_can_hold_apart) {
 }
 
 TEST(mesh_atlas, refuses_a_soup_of_faces_before_it_tries_to_pack_it) {
-  // Packing so many triangles takes minutes, but checking that not even single texels fit is
-  // immediate.
+  // To pack so many triangles would take minutes. But the atlas has too few texels for them, and
+  // the code detects this before it packs.
   Progress progress;
   const auto atlas = make_atlas(test::separate_triangles(200'000), 1024, progress);
   ASSERT_FALSE(atlas);

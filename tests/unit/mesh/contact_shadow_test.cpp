@@ -42,7 +42,7 @@ TEST(ContactShadow, is_dark_under_a_box_soft_around_it_and_nothing_far_away) {
 }
 
 TEST(ContactShadow, of_a_raised_part_is_weaker) {
-  // A table: the shadow of its plate is weaker than that of its legs.
+  // A table: the shadow of its plate is weaker than the shadow of its legs.
   mesh::TriangleMesh table = box({-1, -1, 0.5}, {1, 1, 0.6});
   for (const double x : {-0.9, 0.8})
     for (const double y : {-0.9, 0.8})

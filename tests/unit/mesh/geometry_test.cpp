@@ -84,7 +84,7 @@ TEST(MeshGeometry, normals_are_smooth_over_seams_and_weighted_by_area) {
   std::map<std::uint32_t, std::set<std::uint32_t>> normals;
   for (const auto& vertex : geometry.vertices) normals[vertex.position_index].insert(vertex.normal);
   for (const auto& [position, set] : normals) EXPECT_EQ(set.size(), 1u);
-  // The two congruent triangles give a vertical normal on the fold.
+  // The two triangles are congruent, so the normal on the fold is vertical.
   for (const auto& vertex : geometry.vertices) {
     const glm::vec3 normal = unpack_normal(vertex.normal);
     EXPECT_NEAR(glm::length(normal), 1, 0.004);

@@ -1,5 +1,5 @@
 // Imports every scan next to the source tree without storing it in a database. Each import runs in
-// a separate process, which gives its peak memory. Compares the result with figures of a reader
+// a separate process, to measure its peak memory. Compares the result with figures of a reader
 // that shares no code with this one. Prints a table, which docs/reference/formats.md shows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

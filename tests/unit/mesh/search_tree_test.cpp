@@ -24,7 +24,7 @@ std::array<glm::dvec3, 3> corners(const Geometry& geometry, std::size_t triangle
   return {at(0), at(1), at(2)};
 }
 
-// Returns the distance to a triangle by another method than the tree. It is the distance to the
+// Returns the distance to a triangle, with a method that the tree does not use: the distance to the
 // plane if the foot of the perpendicular is inside the triangle, otherwise the least distance to
 // the three sides.
 double oracle_distance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t) {

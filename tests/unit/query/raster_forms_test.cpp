@@ -1,5 +1,5 @@
-// TIFF and NumPy files give the same texels with every type of number, byte order and layout. Also,
-// GIS programs can read Strata's TIFF files.
+// The reader returns the same texels for TIFF and NumPy files with every type of number, byte order
+// and layout. GIS programs can read Strata's TIFF files.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -6,7 +6,7 @@ type Told = readonly [title: string, detail: string];
 
 export interface OwnProblems {
   unreachable: Told;
-  /** Texts for the statuses of responses without a problem body, such as those of a proxy. */
+  /** Texts for the statuses of responses without a problem body, such as responses of a proxy. */
   statuses: Readonly<Record<string, Told>>;
   other_status(status: number): string;
   other_status_detail: string;

@@ -99,7 +99,7 @@ function Contract({ store }: { store: AppStore }) {
   );
 }
 
-/** Gives accessible names to Redoc's select boxes for media types and examples, which have none. */
+/** Adds accessible names to Redoc's select boxes for media types and examples. */
 function nameChoices(place: Element): void {
   for (const choice of place.querySelectorAll("select:not([aria-label])"))
     choice.setAttribute(

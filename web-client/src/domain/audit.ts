@@ -35,7 +35,7 @@ const kOrder: Record<AuditAction, true> = {
 };
 export const kAuditActions = Object.keys(kOrder) as AuditAction[];
 
-/** What the user entered. Days are as in date fields (2026-05-04), in the browser's time zone. */
+/** The entered filter. Days are as in date fields (2026-05-04), in the browser's time zone. */
 export interface AuditFilter {
   actor: string;
   action: AuditAction | "";

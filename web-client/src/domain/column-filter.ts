@@ -138,7 +138,7 @@ export function filterOf(
 // ── the text ─────────────────────────────────────────────────────────────────────────────────────
 
 /**
- * Splits a filter at each top-level "and". Conditions joined by "or" count as one condition, in
+ * Splits a filter at each top-level "and". Conditions joined by "or" are one condition, in
  * parentheses.
  */
 export function conditionsOf(filter: string): string[] {

@@ -43,7 +43,7 @@ export interface FigureChoices {
   from: FigureFrom;
   scale: number | null; // null for the largest scale that fits the sheet
   paper: Paper;
-  orientation: Orientation | null; // null for the one with the larger scale
+  orientation: Orientation | null; // null for the orientation with the larger scale
   dpi: number;
   format: FigureFormat;
   legend: boolean;

@@ -3,7 +3,7 @@
 import type { Kiosk } from "../core/protocol.gen";
 
 /**
- * The time after the last report from which a kiosk counts as silent. A kiosk sends a report every
+ * A kiosk is silent if it has sent no report for this time. A kiosk sends a report every
  * half minute. The server stores the time of the last report to the minute. A silent kiosk shows
  * nothing, or has no network.
  */

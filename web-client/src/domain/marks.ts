@@ -59,7 +59,7 @@ const kLongestStep = 40;
 
 /**
  * Splits a line on a surface, given as the result at each step, into parts. A part ends at a step
- * without a hit. It also ends if the next point lies far in front of or behind the last one, as at
+ * without a hit. It also ends if the next point is far in front of or behind the last one, as at
  * the edge of a handle. `stepAt` returns the length of a pixel at a point of a surface that faces
  * the camera. This is the distance between two steps at that point.
  */

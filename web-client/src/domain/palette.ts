@@ -191,8 +191,8 @@ function withShare(color: string, share: number): string {
 }
 
 /**
- * Returns the style of a legend's square, which is filled as on the surface. The measures are those
- * of shaders/shared/shade.h.
+ * Returns the style of a legend's square, which is filled as on the surface. The lengths
+ * are the same as in shaders/shared/shade.h.
  */
 export function swatchStyle({
   color,

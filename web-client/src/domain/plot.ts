@@ -155,8 +155,8 @@ export function makePlot({ parts, yUnit, equal, width, height }: PlotOf): Plot {
 }
 
 /**
- * Returns a range that is slightly larger than that of the numbers. If the numbers differ by less
- * than `noise`, the range is so large that the curve looks flat.
+ * Returns a range that is slightly larger than the range of the numbers. If the numbers differ by
+ * less than `noise`, the range is so large that the curve looks flat.
  */
 function rangeOf(numbers: readonly number[], noise: number | null): [number, number] {
   let [min, max] = [Infinity, -Infinity];

@@ -18,8 +18,8 @@ export interface ProfilePlace {
 export type ProfileParts = readonly (readonly ProfilePlace[])[];
 
 /**
- * Splits samples of a line into parts. A gap between two parts (see `partsOfLine`) does not count
- * towards the distance.
+ * Splits samples of a line into parts. A gap between two parts (see `partsOfLine`) is not
+ * included in the distance.
  */
 export function profileParts(
   samples: readonly ProfileSample[],

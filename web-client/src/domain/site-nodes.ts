@@ -13,8 +13,8 @@ export function shortAddress(url: string): string {
 }
 
 /**
- * Returns the load of a node, from 0 to 1, compared with the busiest node. A site that does little
- * has short bars: the scale has at least one processor core.
+ * Returns the load of a node, from 0 to 1, compared with the busiest node. The scale
+ * has at least one processor core, so the bars are short if the site is almost idle.
  */
 export function loadShare(node: SiteNode, nodes: readonly SiteNode[]): number {
   const scale = Math.max(1, ...nodes.map(({ cores_used: cores }) => cores));

@@ -104,8 +104,8 @@ function isBack(end: Found, step: Found, { pixelAt }: Measures): boolean {
 }
 
 /**
- * Returns the length of the runs on the screen. It includes the way to them from `end`, and the way
- * back to the surface at `back`.
+ * Returns the length of the runs on the screen. The length includes the distance from `end` to the
+ * first run, and the distance from the last run to `back` on the surface.
  */
 function drawnLength(end: Found, aside: readonly Run[], back: Found | null): number {
   const way = [end, ...aside.flat(), ...(back ? [back] : [])];
@@ -209,8 +209,8 @@ export async function lineOnSurface(
 }
 
 /**
- * Returns the length of the line during drawing. The parts between two runs count as straight
- * lines.
+ * Returns the length of the line during drawing. The part between two runs is a straight
+ * line.
  */
 export function lengthSeen(steps: readonly Step[], measures: Measures): number {
   let sum = 0;

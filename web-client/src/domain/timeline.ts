@@ -2,7 +2,7 @@
 
 import type { Timeline, TimelineInterval, TimelineStep } from "../core/protocol.gen";
 
-/** Returns the last item that fits, or null. */
+/** Returns the last item for which `fits` is true, or null. */
 export function lastWhere<T>(all: readonly T[], fits: (one: T) => boolean): T | null {
   for (let i = all.length - 1; i >= 0; --i) if (fits(all[i]!)) return all[i]!;
   return null;

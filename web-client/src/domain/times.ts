@@ -26,7 +26,7 @@ const kAgo = [
 ] as const; // with the number of units in the next larger unit
 
 /**
- * Formats a time as "2 minutes ago" or "3 hours ago". After a day, the format is that of
+ * Formats a time as "2 minutes ago" or "3 hours ago". After a day, uses the format of
  * toldTime().
  */
 export function toldAgo(iso: string, now = new Date()): string {

@@ -1,9 +1,9 @@
-// Adds `as=kiosk` to every address that the kiosk requests. The server then uses the kiosk's own
-// cookie, never the cookie of a user who is signed in in the same browser.
+// Adds `as=kiosk` to every address that the kiosk requests. For such a request, the server uses
+// only the kiosk's own cookie, and not the cookie of a signed-in user of the same browser.
 
 import type { Fetch } from "../net/api";
 
-const kPatienceMs = 30_000; // without a response in this time, the server counts as unreachable
+const kPatienceMs = 30_000; // without a response in this time, a request fails
 
 export const asKiosk = (address: string): string =>
   `${address}${address.includes("?") ? "&" : "?"}as=kiosk`;

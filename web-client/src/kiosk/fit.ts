@@ -54,7 +54,7 @@ export function placeOfObject(
     : { ...place, target, distance: half / kHalfFieldTangent };
 }
 
-/** Returns the corners of the box in the axes of the view: right, up, and back to the eye. */
+/** Returns the corners of the box in the axes of the view: right, up, and towards the eye. */
 function cornersOf(view: readonly number[], { min, max }: Bounds): Vec3[] {
   const enlarged = Math.hypot(view[2]!, view[6]!, view[10]!);
   return Array.from({ length: 8 }, (_, corner): Vec3 => {

@@ -64,8 +64,8 @@ export class StrataKiosk extends LitElement {
   }
 
   /**
-   * Any event counts as activity. Only the start button begins the tour, so the first touch has no
-   * other effect.
+   * Any event restarts the idle time. Only the start button begins the tour, so the first touch has
+   * no other effect.
    */
   private readonly touched = (event: Event): void => {
     // without a button, a mouse may move because its table shakes

@@ -1,6 +1,6 @@
 // Styles of the kiosk. All controls are in the lower half. Touch targets are at least 15 mm (57 CSS
 // pixels), and larger on touch-only and large screens. Portrait screens show the object above the
-// texts, wide screens next to them. The text is readable at a distance of 2 m.
+// texts, and wide screens show it next to the texts. The text is readable at a distance of 2 m.
 
 import { css } from "lit";
 

@@ -112,7 +112,7 @@ export class StrataKioskPlayer extends LitElement {
     .time {
       font-variant-numeric: tabular-nums;
     }
-    /* As high as a finger. The visible line is only the middle of the control. */
+    /* The control is as high as a finger. The visible line is only the middle of the control. */
     input {
       flex: 1 1 12em;
       min-width: 8em;
@@ -239,7 +239,7 @@ export class StrataKioskPlayer extends LitElement {
     if (!media) return;
     this._atS = media.currentTime;
     this._lengthS = Number.isFinite(media.duration) ? media.duration : 0;
-    // Visitors who watch do not touch the screen, so playing counts as activity.
+    // Visitors who watch do not touch the screen, so playing restarts the idle time.
     if (!media.paused) this.session.touched();
   };
   private readonly onFailed = (): void => void (this._failed = true);

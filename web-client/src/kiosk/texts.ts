@@ -32,7 +32,7 @@ const en = {
   stage:
     "The object in 3D. Use one finger to turn it, two fingers to move, zoom and tilt it. Tap a place to learn more.",
   hint: "Turn with one finger, zoom with two. Tap a place to learn more.",
-  stored: "Still pictures for a moment",
+  stored: "Only still pictures at the moment",
   waiting: "One moment …",
   worthless: "This screen no longer has a tour",
   worthless_detail: "Its link was revoked or has expired. Create a new link in Strata.",

@@ -19,7 +19,7 @@ interface WorkerScope {
 }
 const scope = globalThis as unknown as WorkerScope;
 
-const kPatienceMs = 10_000; // images take a moment; an unreachable server never responds
+const kPatienceMs = 10_000; // long enough for images; an unreachable server may never respond
 
 scope.addEventListener("install", (event) => event.waitUntil(scope.skipWaiting()));
 scope.addEventListener("activate", (event) => event.waitUntil(scope.clients.claim()));

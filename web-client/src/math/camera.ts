@@ -117,8 +117,8 @@ export class OrbitCamera {
 
   /**
    * Shows a part of the model, from the direction that its surface faces. Without `normal`, shows
-   * the part from the side of the model that it is on. For a part near the middle of the model,
-   * keeps the direction.
+   * the part from its side of the model. For a part near the middle of the model, keeps the
+   * direction.
    */
   lookAt(box: Bounds, normal?: Vec3): void {
     const middle = centre(box);
@@ -169,7 +169,7 @@ export class OrbitCamera {
   }
 
   /**
-   * Returns the unit vectors of the window in world coordinates: right, up, and back to the viewer.
+   * Returns the unit vectors of the window in world coordinates: right, up, and towards the viewer.
    */
   axes(): { right: Vec3; up: Vec3; back: Vec3 } {
     const frame = kFrames[this._up];
@@ -339,7 +339,7 @@ export class OrbitCamera {
     };
   }
 
-  /** Returns the window position of a world point, or null behind the eye. */
+  /** Returns the window position of a world point, or null for a point behind the eye. */
   project(point: Vec3): { x: number; y: number; depth: number } | null {
     const seen = transform(this.viewMatrix(), [point[0], point[1], point[2], 1]);
     const clip = transform(this.projectionMatrix(), seen);
@@ -351,7 +351,10 @@ export class OrbitCamera {
     };
   }
 
-  /** Returns the window position of a world point, or null behind the eye or outside the window. */
+  /**
+   * Returns the window position of a world point, or null for a point behind the eye or outside the
+   * window.
+   */
   projectInside(point: Vec3): { x: number; y: number; depth: number } | null {
     const at = this.project(point);
     return at && at.x >= 0 && at.y >= 0 && at.x <= this.width && at.y <= this.height ? at : null;

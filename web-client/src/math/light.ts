@@ -1,5 +1,5 @@
 // The direction of raking light, as a point on a round pad. The middle of the pad is light from the
-// viewing direction, the rim is light from the side.
+// viewing direction, and the rim is light from the side.
 
 import type { Point3 } from "../core/protocol.gen";
 

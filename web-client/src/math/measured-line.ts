@@ -23,10 +23,10 @@ export interface FlatPolygon {
 }
 
 /**
- * Returns the flat area of the polygon through the points, in their order (Newell's formula). It is
- * exact for points in one plane. Otherwise it is the area of the projection along the normal with
- * the largest area. In a self-intersecting polygon, parts with the opposite orientation count as
- * negative. Returns null for fewer than three points.
+ * Returns the flat area of the polygon through the points, in their order (Newell's formula). The
+ * area is exact for points in one plane. Otherwise it is the area of the projection in the
+ * direction in which this area is largest. In a self-intersecting polygon, parts with the opposite
+ * orientation have a negative area. Returns null for fewer than three points.
  */
 export function flatPolygon(places: readonly Vec3[]): FlatPolygon | null {
   const [first, ...others] = places;

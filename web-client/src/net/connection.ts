@@ -72,7 +72,7 @@ export interface ConnectionCallbacks {
   snapshot(message: SnapshotEvent): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
-  /** The server refused a message. A permanently refused change no longer waits. */
+  /** The server refused a message. A change that is refused permanently is not sent again. */
   problem(problem: Omit<ProblemMessage, "op">): void;
   /**
    * Reports the number of changes that an earlier page could not save and that this page sends
@@ -106,9 +106,9 @@ export interface ConnectionOptions {
 // The time limit for the handshake and the message `welcome`. The server may load the model in this
 // time.
 const kOpeningMs = 30_000;
-const kBusySocketBytes = 256 * 1024; // cameras wait above this number of unsent bytes
+const kBusySocketBytes = 256 * 1024; // no camera is sent above this number of unsent bytes
 const kAdvice = "advice"; // id of messages whose failure is not reported
-const kLastMovedRetryMs = 1000; // while the site decides which node has the model
+const kLastMovedRetryMs = 1000; // retry delay while the site decides which node has the model
 const kMostWaiting = 5000; // number of changes above which new strokes are refused
 
 export class Connection {
@@ -117,7 +117,7 @@ export class Connection {
   private _attempts = 0;
   private _moved = false;
   private _databaseLost = false;
-  private _address: string; // of the next connection: at the site, or at one of its nodes
+  private _address: string; // address of the next connection: the site, or one of its nodes
   private _retryTimer: ReturnType<typeof setTimeout> | null = null;
   private readonly _silence = new SilenceWatch({
     ask: () => this.askForLife(),
@@ -282,7 +282,8 @@ export class Connection {
     this.sendSettings();
     if (this._state !== "open") return;
     if (this._settings.comparesWithPast && !compared) this._camera.sendNow();
-    // The second view no longer shows the earlier state. Its later frames get no credit.
+    // Resets the second view to the newest state. The page does not acknowledge later frames of
+    // this view, so the server stops drawing them.
     if (compared && !this._settings.comparesWithPast)
       this.send({ op: "layers", view_id: kBesideView, layers: [] });
   }
@@ -334,7 +335,8 @@ export class Connection {
   private change(message: ChangeMessage): void {
     this._queue?.put(message);
     this._outbox.add(message);
-    // Without its database, the node refuses changes. They are sent when it has it again.
+    // A node without its database refuses changes. They are sent when the node has its database
+    // again.
     if (!this._databaseLost && !this._resender.queue(message) && this._state === "open")
       this.send(message);
     this.expectAnswer();
@@ -514,7 +516,7 @@ export class Connection {
   }
 
   /**
-   * Connects to the node that has the model now. The welcome then sends unsaved changes again.
+   * Connects to the node that has the model now. After the welcome, unsaved changes are sent again.
    * If that node also refers to another node, the next attempt is delayed, because two nodes may
    * refer to each other.
    */
@@ -563,7 +565,7 @@ export class Connection {
     this._silenced.clear();
     this._socket = null;
     this._search.stop();
-    this._databaseLost = false; // as far as known: the next connection may be to another node
+    this._databaseLost = false; // unknown from now on: the next connection may be to another node
     this.setState("lost");
     this.reportSaving();
     // A listener may have closed the connection or requested another attempt.

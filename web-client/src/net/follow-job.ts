@@ -6,7 +6,7 @@ import type { Job } from "../core/types";
 
 const kPollMs = 400;
 const kLongestPollMs = 5000;
-// some minutes, because a restarted server still reports the job's result
+// enough for some minutes, because a restarted server still reports the job's result
 const kMostFailedPolls = 60;
 
 export const jobIsOver = (job: Job): boolean => job.state !== "queued" && job.state !== "running";

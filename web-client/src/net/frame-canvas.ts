@@ -39,7 +39,7 @@ export class FrameCanvas {
 
   /**
    * Decodes a part immediately and draws it in the order of the calls. A part that cannot be
-   * decoded counts as drawn, so the server's credit does not run out.
+   * decoded is also reported as drawn, so the server's credit does not run out.
    */
   push(part: FrameMessage): void {
     const generation = this._generation;

@@ -3,8 +3,8 @@
 /**
  * Returns the address of the live connection `own` at the node with the address `node`. A node with
  * another origin than the page, or with an invalid address, is ignored, so no message can make the
- * page send its edits to another site. The page then uses the address of the site, which leads to
- * the right node.
+ * page send its edits to another site. In this case, the page uses the address of the site, which
+ * leads to the right node.
  */
 export function addressAtNode(own: string, node: string | undefined): string {
   if (node === undefined) return own;

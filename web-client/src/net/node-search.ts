@@ -66,7 +66,7 @@ export class NodeSearch {
   private onMessage(socket: SocketLike, data: unknown): void {
     const op = typeof data === "string" ? opOf(data) : undefined;
     if (op === "welcome") {
-      this._socket = null; // so `stop` does not close it
+      this._socket = null; // stop() must not close this socket
       this.stop();
       this._host.found(socket, data as string);
     } else if (op === "moved" || op === "database") {

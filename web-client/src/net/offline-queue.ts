@@ -47,8 +47,8 @@ const isChange = (row: unknown): row is ChangeMessage =>
   kChanges.includes(row.op as string);
 
 /**
- * The changes of one user on one model. `failed` is called if the browser cannot store them. The
- * changes are then lost when the page is closed.
+ * The changes of one user on one model. `failed` is called if the browser cannot store the changes.
+ * In this case, they are lost when the page is closed.
  */
 export class OfflineQueue {
   private readonly _keys = new Map<string, Key>();

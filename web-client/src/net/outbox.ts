@@ -107,7 +107,7 @@ export class Outbox {
     });
   }
 
-  /** Whether the message is a batch of a stroke of which an earlier batch is also waiting. */
+  /** Whether the message is a batch of a stroke, and an earlier batch of this stroke is waiting. */
   followsWaitingBatch(id: string): boolean {
     return this._entries.some(
       (entry) => entry.kind === "stroke" && entry.parts.findIndex((part) => part.id === id) > 0,

@@ -1,5 +1,5 @@
 // Schedules new reads after events. The server sends these events before it has saved a change. One
-// read is soon after the first event, another when the last change is certainly saved.
+// read follows soon after the first event, and another when the last change is certainly saved.
 
 const kSoonMs = 1000; // events in this time cause a single read
 const kSavedMs = 3000; // time after the last event

@@ -1,5 +1,5 @@
 // Sends unsaved changes again, in order, and no faster than the server accepts. New changes wait
-// until these are sent.
+// until the earlier changes are sent.
 
 import type { ChangeMessage } from "./outbox";
 
@@ -27,8 +27,8 @@ export class Resender {
   }
 
   /**
-   * Queues a message. Returns false if no messages are being sent again, so the message need not
-   * wait.
+   * Queues a message. Returns false if no messages are being sent again, so the caller can send the
+   * message directly.
    */
   queue(message: ChangeMessage): boolean {
     if (this._left.length === 0) return false;

@@ -19,7 +19,8 @@ export class ViewSettings {
   private _light: Light | null = null; // null for the server's default
   private _background: Background | null = null; // null for the server's default
   private _at: number | null = null; // shows the state after this edit; null for the newest state
-  private _beside = false; // the second view shows that state, the first view the newest state
+  // the second view shows this state, and the first view shows the newest state
+  private _beside = false;
 
   /** Sets the surface images and light. Returns whether there is a change to send. */
   setAppearance(looks: LookShown[] | null, light: Light): boolean {

@@ -77,7 +77,7 @@ export class LineMeasure<Step> {
   }
 
   /**
-   * Measures a part of the line. `stays` is true for a drawn part, false for the segment to the
+   * Measures a part of the line. `stays` is true for a drawn part, and false for the segment to the
    * pointer.
    */
   private async learn(path: readonly Point[], stays: boolean): Promise<void> {

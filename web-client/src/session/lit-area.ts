@@ -22,7 +22,7 @@ export class LitArea {
   /** The address of an image of the stage's window. It is opaque where the area is visible. */
   picture: string | null = null;
   private _request: LitRequest | null = null;
-  private _lasting: LitRequest | null = null; // highlighted again when no other area is highlighted
+  private _lasting: LitRequest | null = null; // highlighted again after a temporary highlight
   private _running: AbortController | null = null;
 
   /** Whether the rest of the frame is dimmed, because changed parts may be small. */
@@ -54,8 +54,8 @@ export class LitArea {
   }
 
   /**
-   * Works like `show`. The area is highlighted again after other areas were highlighted
-   * temporarily. Null ends this.
+   * Works like `show`, but also highlights the area again after a temporary highlight of another
+   * area. Null removes this area.
    */
   async showLasting(request: LitRequest | null): Promise<SelectResponse | null> {
     this._lasting = request;

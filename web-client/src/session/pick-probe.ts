@@ -69,7 +69,7 @@ export class PickProbe {
     return true;
   }
 
-  /** Forgets the pending request, because its response was lost with the connection. */
+  /** Discards the pending request, because its response was lost with the connection. */
   reset(): void {
     this._asked = null;
   }

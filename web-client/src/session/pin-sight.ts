@@ -1,6 +1,6 @@
-// Determines the visibility of points on the surface. While the camera moves, points that were
-// visible and face the camera count as visible. When it stops, the server returns the surface at
-// their pixels.
+// Determines the visibility of points on the surface. While the camera moves, points whose surface
+// faces the camera are shown, except points that were hidden before. When the camera stops, the
+// server returns the surface at the pixels of the points.
 
 import { boundingRadius, type CameraMessage, type OrbitCamera } from "../math/camera";
 import type { Point } from "../net/stroke";

@@ -73,7 +73,7 @@ export class PointerWatch {
   refused(ref: string | undefined): boolean {
     return this._probe.refused(ref);
   }
-  /** Forgets the pending request, because its response was lost with the connection. */
+  /** Discards the pending request, because its response was lost with the connection. */
   reset(): void {
     this._probe.reset();
   }

@@ -1,6 +1,6 @@
 // The current editors of records, and the records that this page has open for editing. These claims
-// are only advice, which makes users aware of each other. The version of the record protects the
-// data. Without a connection, all users can edit.
+// do not lock a record, but only show users that another user is editing it. The version of the
+// record protects the data. Without a connection, all users can edit.
 
 import type { RecordEditor, RecordEditors as EditorsMessage } from "../core/protocol.gen";
 
@@ -94,7 +94,7 @@ export class RecordEditors {
     this._host.changed();
   }
 
-  /** Forgets all editors, which are unknown after the connection was lost. */
+  /** Removes all editors, because they are unknown after the connection was lost. */
   left(): void {
     this._there.clear();
     this._host.changed();

@@ -15,7 +15,7 @@ import type { Plane } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 import type { Vec3 } from "../math/vector";
 
-const kStillAfterMs = 120; // the camera counts as still after this time without input
+const kStillAfterMs = 120; // after this time without input, the camera has stopped
 const kFlightMs = 600;
 // The time constants of the movement towards a followed camera.
 const kEaseMs = { least: 70, most: 250 };
@@ -67,7 +67,7 @@ export class ViewControl {
     });
   }
 
-  /** Sets the model. `turned` is true if its up direction has changed. */
+  /** Sets the model. `turned` is true if the up direction of the model has changed. */
   setModel(model: Model, turned: boolean): void {
     this._hasModel = true;
     this.camera.setModel(model.bounds, model.up);

@@ -12,7 +12,10 @@ export interface Command {
   /** The key caps of the first key. */
   readonly caps?: readonly string[];
   readonly glyph?: IconName;
-  /** The reason why the command is unavailable. Its key shows the reason or has no effect. */
+  /**
+   * The reason why the command is unavailable. The key of the command shows the reason or has no
+   * effect.
+   */
   readonly problem?: string | undefined;
   /** Whether the command is useful only with its key. */
   readonly isKeyOnly?: boolean;

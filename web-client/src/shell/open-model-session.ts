@@ -590,8 +590,8 @@ export class OpenModelSession implements ModelSession {
   }
 
   /**
-   * Determines why the connection was lost. A refused socket gives no reason, but a request over
-   * HTTP does.
+   * Determines why the connection was lost. The browser does not report why a socket was refused,
+   * so this method sends a request over HTTP.
    */
   private async findWhyLost(): Promise<void> {
     try {

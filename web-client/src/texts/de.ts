@@ -1,5 +1,5 @@
-// German, in the terms of archaeology and conservation. Commands are infinitives where that reads
-// naturally ("Datei wählen"), else they use "Sie".
+// German, in the terms of archaeology and conservation. Commands are infinitives ("Datei wählen"),
+// or use "Sie" if an infinitive sounds unnatural.
 //
 // Terms of the field:
 //   model Modell · scan Scan · surface Oberfläche · layer Ebene · look Oberflächenbild · raking light Streiflicht · section Schnitt

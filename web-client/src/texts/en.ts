@@ -173,7 +173,7 @@ export const texts = {
     token_unused: "never used",
     token_revoke: (name: string) => `Revoke ${name}`,
     token_revoke_title: (name: string) => `Revoke the token “${name}”?`,
-    token_revoke_lead: "Scripts that use it lose access at once. This cannot be undone.",
+    token_revoke_lead: "Scripts that use it lose access immediately. This cannot be undone.",
     revoke: "Revoke",
   },
 
@@ -234,7 +234,7 @@ export const texts = {
     open: "Trash…",
     title_of: (project: string) => `Trash of “${project}”`,
     lead: (days: number) => `Deleted items stay here for ${count(days, "day", "days")}.`,
-    not_kept_lead: "This server erases deleted items at once.",
+    not_kept_lead: "This server erases deleted items immediately.",
     none: "The Trash is empty.",
     more: "Show earlier",
     kinds: { layer: "Layer", model: "Model", record: "Record" },
@@ -573,7 +573,7 @@ export const texts = {
     rename_title: (name: string) => `Rename “${name}”`,
     delete_title: (name: string) => `Delete the shape “${name}”?`,
     delete_lead:
-      "It is deleted for everyone on this site. Paint made with it stays and can still be undone.",
+      "It is deleted for everyone on this site. Paint that was made with it remains and can still be undone.",
     gone: (name: string) => `The shape “${name}” was deleted. The brush is now round.`,
   },
 
@@ -650,7 +650,7 @@ export const texts = {
     bounds: (x0: string, x1: string, y0: string, y1: string) =>
       `x from ${x0} to ${x1}, y from ${y0} to ${y1}`,
     readings_hint:
-      "The first line must name the columns x, y, z and value. Use the model's coordinates and unit. Paint outside the radius stays.",
+      "The first line must name the columns x, y, z and value. Use the model's coordinates and unit. Paint outside the radius does not change.",
     radius: "Radius around each point",
     tolerance: "Largest distance from the surface",
     vertices_hint:
@@ -670,8 +670,8 @@ export const texts = {
     modes: { luminance: "Brightness", band: "Number", colors: "By color" },
     mode_hints: {
       luminance: "The brightness of the picture, 0 to 255.",
-      band: "The number in the raster. Points without a number stay as they are.",
-      colors: "The value of the color. Points with ignored colors stay as they are.",
+      band: "The number in the raster. Points without a number do not change.",
+      colors: "The value of the color. Points with ignored colors do not change.",
     },
     band: "Band",
     color: "Color",
@@ -851,7 +851,10 @@ export const texts = {
         lead: "How much of the surroundings is visible from each point: 1 where nothing blocks the view, 0 in deep cavities.",
       },
       height: { title: "Height", lead: "Height above the lowest point, along the up direction." },
-      slope: { title: "Slope", lead: "0° is flat, 90° is vertical, more is an overhang." },
+      slope: {
+        title: "Slope",
+        lead: "0° is horizontal, 90° is vertical, and larger angles are overhangs.",
+      },
       azimuth: {
         title: "Facing direction",
         lead: "Degrees clockwise from north, seen from above.",
@@ -1409,7 +1412,7 @@ export const texts = {
     more_title: (list: string) => `Terms for “${list}”`,
     lead: "Choose SKOS (Turtle, N-Triples or RDF/XML), the format of published thesauri, or CSV with the columns code, parent, label, label-es (or another language), definition, uri, color and pattern. Only code is required.",
     more_lead:
-      "Choose a SKOS or CSV file. Existing terms are matched by URI or code and updated. Their paint stays. Other terms are added. You can undo this.",
+      "Choose a SKOS or CSV file. Existing terms are matched by URI or code and updated. Their paint does not change. Other terms are added. You can undo this.",
     file: "File with terms",
     name: "Name of the list",
     name_missing: "Enter a name for the list.",
@@ -1608,7 +1611,7 @@ export const texts = {
     edit: "Edit…",
     delete_title: (name: string) => `Delete the tour “${name}”?`,
     delete_lead:
-      "It is deleted for everyone, and its kiosk links stop working at once. This cannot be undone.",
+      "It is deleted for everyone, and its kiosk links stop working immediately. This cannot be undone.",
     new_title: "New tour",
     edit_title: (name: string) => `Tour “${name}”`,
     name: "Name",
@@ -1658,7 +1661,8 @@ export const texts = {
     transition_takes: "Duration of the flight",
     swipe: "Layers to swipe between",
     swipe_hint: "Visitors can swipe between the layers. They can see only public layers.",
-    layer_names: "Names of these layers for visitors. Changes are saved with the layer at once.",
+    layer_names:
+      "Names of these layers for visitors. Changes are saved immediately, with the layer.",
     layer_name: (layer: string, language: string) => `${layer} in ${language}`,
     layer_add: "Add a layer",
     records: "Records",
@@ -1775,7 +1779,7 @@ export const texts = {
     revoke: "Revoke…",
     revoke_of: (name: string) => `Revoke the link for ${name}`,
     revoke_title: (name: string) => `Revoke the link for “${name}”?`,
-    revoke_lead: "The screen stops showing the tour at once. This cannot be undone.",
+    revoke_lead: "The screen stops showing the tour immediately. This cannot be undone.",
     revoke_yes: "Revoke",
   },
 

@@ -1,5 +1,5 @@
 // Spanish, in the terms of archaeology and conservation, for readers on both sides of the Atlantic.
-// Commands are infinitives where that reads naturally («Elegir un archivo»), else they use "usted".
+// Commands are infinitives («Elegir un archivo»), or use "usted" if an infinitive sounds unnatural.
 //
 // Terms of the field:
 //   model modelo · scan escaneo · surface superficie · layer capa · look imagen de la superficie · raking light luz rasante · section sección

@@ -7,11 +7,11 @@ import type { PointerSample } from "../ui/input";
 import type { Outline, Tool } from "./tool";
 
 export interface OutlineHost {
-  /** Returns false if painting is not possible. The host has then shown the reason. */
+  /** Returns false if painting is not possible. In this case, the host has shown the reason. */
   beginOutline(at: PointerSample): boolean;
   /**
-   * An area has at least three points, a line at least two. `corners` is true if the points were
-   * set one by one, so the user can change them.
+   * An area has at least three points, and a line has at least two points. `corners` is true if the
+   * points were set one by one, so the user can change them.
    */
   finishOutline(path: Point[], corners: boolean): void;
   /** Called when an outline for which `beginOutline` returned true is finished or canceled. */
@@ -34,7 +34,7 @@ export interface FinishedOutlines {
 }
 
 export const kMostPoints = 4096;
-export const kSnapPx = 11; // a press within this distance in CSS pixels is on a point
+export const kSnapPx = 11; // in CSS pixels; a press within this distance of a point is on the point
 const kSpacingPx = 2; // CSS pixels
 
 export abstract class OutlineTool {

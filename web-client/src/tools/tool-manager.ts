@@ -7,7 +7,7 @@ import type { Tool, ToolName } from "./tool";
 export class ToolManager {
   private readonly _tools = new Map<ToolName, Tool>();
   private _active: Tool;
-  private _before: Tool | null = null; // the chosen tool while another tool is borrowed
+  private _before: Tool | null = null; // the chosen tool while another tool is temporarily active
   private _dragging = false;
 
   constructor(

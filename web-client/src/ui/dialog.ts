@@ -1,5 +1,5 @@
 // <strata-dialog>: a modal dialog with a heading, content and a row of buttons. The first button
-// leaves the dialog. The others are its actions (slot "actions").
+// leaves the dialog. The other buttons are the actions of the dialog (slot "actions").
 
 import { css, html, LitElement, nothing, ReactiveElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -220,7 +220,7 @@ export class StrataDialog extends LitElement {
     dockedDialogs.delete(this._dialog);
   }
 
-  /** Closes the dialog and fires "closed". The owner then removes the element. */
+  /** Closes the dialog and fires "closed", so the owner removes the element. */
   close(): void {
     this._closes = true;
     this._dialog.close();

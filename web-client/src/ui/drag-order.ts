@@ -1,5 +1,5 @@
-// Drags a row of a list by its grip to another position. Only the mouse can drag rows. Menus or
-// buttons move them with keys and fingers.
+// Drags a row of a list by its grip to another position. Only the mouse can drag rows. For
+// keyboards and touch, menus or buttons move the rows.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 

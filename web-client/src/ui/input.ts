@@ -3,9 +3,9 @@
 // decides on the effect of a drag with the tool button.
 //
 // A hand that holds a pen rests on the screen. While a pen touches the screen or is in range, and
-// for a moment afterwards, all touches count as this hand. Existing touches are dropped and new
-// ones are ignored until they are lifted. After the first use of a pen, only the pen paints, and
-// fingers rotate.
+// for a moment afterwards, all touches are treated as this hand. Current touches are canceled, and
+// new touches are ignored until they are lifted. After the first use of a pen, only the pen paints,
+// and fingers rotate.
 
 export interface PointerSample {
   x: number;
@@ -23,7 +23,7 @@ export interface GestureHandler {
   toolMove(samples: PointerSample[]): void;
   toolUp(): void;
   /**
-   * A second finger touched, or the system canceled the pointer. The effect of the tool so far is
+   * A second finger touched, or the system canceled the pointer. The previous effect of the tool is
    * kept.
    */
   toolCancel(): void;
@@ -39,7 +39,7 @@ export interface GestureHandler {
    * pointer is used.
    */
   freeMouse(sample: PointerSample | null): void;
-  /** Whether only a pen can use the tool. One finger then rotates the model. */
+  /** Whether only a pen can use the tool. If so, one finger rotates the model. */
   toolIsForPen(): boolean;
 }
 
@@ -114,8 +114,8 @@ export class StageInput {
   }
 
   /**
-   * Ignores the current touches, which belong to the hand with the pen. Their effect so far is
-   * kept.
+   * Ignores the current touches from now on, because they belong to the hand with the pen. Their
+   * previous effect is kept.
    */
   private dropFingers(): void {
     if (this._fingers.size === 0) return;

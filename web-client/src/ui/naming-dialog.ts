@@ -47,7 +47,7 @@ export class StrataNamingDialog extends LitElement {
   @property({ attribute: false }) called: Called | null = null;
   @property({ attribute: false }) option: NamingOption | null = null;
   /**
-   * Saves the input. Returns the problem, or an empty text after success. The dialog then closes.
+   * Saves the input. Returns the problem, or an empty text after success, which closes the dialog.
    * `key` is the idempotency key, which is the same for all attempts with the same input.
    */
   @property({ attribute: false }) save!: (

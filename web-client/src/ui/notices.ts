@@ -37,7 +37,8 @@ class Notices {
 
   /** Shows a notice and returns its id. */
   show(kind: NoticeKind, title: string, detail = "", link: NoticeLink | null = null): number {
-    // A notice replaces an earlier one with the same text, unless that has an action.
+    // A notice replaces an earlier notice with the same text, unless the earlier notice has an
+    // action.
     const same = this._notices.find(
       (notice) =>
         notice.title === title &&

@@ -37,7 +37,8 @@ export function keepTheme(theme: Theme): void {
 }
 
 /**
- * Returns the effective theme. A system setting for more contrast takes precedence over a dark one.
+ * Returns the effective theme. If the system requests both more contrast and a dark theme, the
+ * theme has more contrast.
  */
 export const themeOf = (
   chosen: Theme,

@@ -22,7 +22,7 @@ export function routeOf(path: string): Route {
   }
 }
 
-/** Whether the address is that of a kiosk, which loads no code of this page. */
+/** Whether the address belongs to the kiosk page, which loads no code of this page. */
 export const isKiosk = (path: string): boolean => path.startsWith("/kiosk/");
 
 export const pathNow = (): string => location.pathname;
@@ -60,7 +60,7 @@ function arrive(): void {
   listeners.forEach((each) => each());
 }
 
-/** Changes the address to that of the displayed content, without navigation. */
+/** Changes the address to the address of the displayed content, without navigation. */
 export function putHash(hash: string): void {
   if (hash === location.hash) return;
   history.replaceState(history.state, "", `${location.pathname}${location.search}${hash}`);

@@ -10,5 +10,6 @@ export function saveFrom(address: string, name: string): void {
 export function saveBlob(blob: Blob, name: string): void {
   const address = URL.createObjectURL(blob);
   saveFrom(address, name);
-  setTimeout(() => URL.revokeObjectURL(address), 60_000); // the browser has then begun to read it
+  // by this time, the browser has begun to read the data
+  setTimeout(() => URL.revokeObjectURL(address), 60_000);
 }

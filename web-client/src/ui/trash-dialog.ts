@@ -186,7 +186,7 @@ export class StrataTrashDialog extends LitElement {
   }
 }
 
-/** Opens the trash of a project. Resolves to whether an item was restored or erased. */
+/** Opens the trash of a project. Resolves to true if an item was restored or erased. */
 export function openTrash(api: Api, project: Pick<Project, "slug" | "name">): Promise<boolean> {
   return new Promise((resolve) => {
     const element = new StrataTrashDialog();

@@ -1,4 +1,4 @@
-// Moves items to the trash of a project: asks the user before, and offers to undo it.
+// Moves items to the trash of a project: asks the user first, and offers to undo the deletion.
 
 import { ApiError } from "../net/api-error";
 import type { Api } from "../net/api";

@@ -268,7 +268,7 @@ describe("strokes of a model that moved", () => {
       type: "/problems#moved",
       title: "Model moved",
       status: 307,
-      detail: "Another node of this site has the model now.",
+      detail: "Another node of this site owns the model now.",
     });
     expect(saving.waiting).toBe(1);
     socket().receive(moved("/node/b"));

@@ -42,7 +42,7 @@ class GltfDocument {
   Result<Form> form(std::uint64_t accessor, const std::string& what) const;
 
   // The values of an accessor as real numbers, `components` numbers per value. Normalized integers
-  // become 0…1 or −1…1. With `normalize`, all integers do. Sparse values are applied.
+  // become 0…1 or −1…1. `normalize` applies this to all integers. Sparse values are applied.
   struct Values {
     std::uint64_t count = 0;
     int components = 0;

@@ -82,7 +82,7 @@ class PrimitiveReader {
                          ", which glTF does not allow here. Export it with " +
                          (attribute.is_color ? "UNSIGNED_BYTE, UNSIGNED_SHORT or FLOAT."
                                              : "FLOAT, or with numbers of KHR_mesh_quantization."));
-    // Integer colors up to 255 or 65535 have no other meaning.
+    // Integer colors can only be shares of 255 or 65535.
     const bool taken = attribute.is_color && type != kFloat && !form.normalized;
     remarks_.colors_taken_as_normalized += taken;
     return taken;

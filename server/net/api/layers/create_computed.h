@@ -6,7 +6,7 @@
 namespace strata::net {
 
 // POST …/layers with `compute`. Starts the job that computes the layer from the shape of the model.
-// Properties in the request (`layer`) have precedence over those of the recipe.
+// Properties in the request (`layer`) have precedence over properties of the recipe.
 Result<Response> create_shape_layer(const RouteContext& context, JobIdempotency& book,
                                     const Request& request, const std::shared_ptr<room::Room>& room,
                                     const protocol::LayerCreate& body, Layer layer);

@@ -180,7 +180,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   Names names;
   OfFeatures features;
   if (target.layer.table) {
-    std::optional<std::int64_t> records_at;  // sequence of the table at that edit
+    std::optional<std::int64_t> records_at;  // sequence of the table at the edit
     if (target.at) {
       auto found = context.store.tables().sequence_when(*target.layer.table, target.layer.model_id,
                                                         *target.at);

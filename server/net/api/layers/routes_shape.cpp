@@ -207,7 +207,7 @@ void write_vertices(const RouteContext& context, const Request& request, const R
   if (!tiles) {
     Error problem = tiles.error();
     if (problem.field == "type")
-      problem.field = "body";  // the values are the cause because the layer already exists
+      problem.field = "body";  // the layer's type is fixed, so the values are wrong
     return respond(problem);
   }
   room::EditRequest edit{edit_id(request, *layer, "import"), request.author(), layer->id};

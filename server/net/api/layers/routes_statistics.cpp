@@ -203,7 +203,7 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   respond(std::move(response));
 }
 
-constexpr const char* kNoValue = "–";  // one of the two layers has no value
+constexpr const char* kNoValue = "–";  // for texels without a value
 
 // Returns the names for one axis of a cross-table.
 Result<std::vector<std::string>> side_names(const RouteContext& context, const room::Room& room,
@@ -214,14 +214,14 @@ Result<std::vector<std::string>> side_names(const RouteContext& context, const r
   std::vector<double> values;
   for (const auto& key : side)
     if (key) values.push_back(*key);
-  std::optional<std::int64_t> records_at;  // sequence of the table at that edit
+  std::optional<std::int64_t> records_at;  // sequence of the table at the edit `at`
   if (layer.table && at) {
     const auto found =
         STRATA_TRY(context.store.tables().sequence_when(*layer.table, room.model().id, *at));
     records_at = found;
   }
   auto names = app::class_names(context.store, layer, role, values, records_at, language);
-  if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // for the last key
+  if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // for "no value"
   return names;
 }
 

@@ -33,7 +33,7 @@ namespace {
 
 // Bytes per texel of an imported file: a double and a validity byte.
 constexpr std::uint64_t kTexelBytes = 9;
-// The maximum size for the largest layer.
+// The maximum size of a raster for the largest layer.
 constexpr std::uint64_t kMaxRasterBytes = (16384ull * 16384 * kTexelBytes) + (1u << 20);
 
 struct Format {
@@ -229,7 +229,7 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
 void add_texel_routes(Router& router, const RouteContext& context) {
   const std::string pattern = "/api/v1/models/{model}/layers/{layer}/texels.{format}";
   auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
-  // Must come before the pattern that accepts any extension.
+  // The router needs this route before the route that accepts any extension.
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/texels.csv",
               .handler = answering([&context](const Request& request) {

@@ -62,7 +62,7 @@ Result<SurfaceImage> bake(room::Room& room, const OrthophotoRequest& requested,
   const jobs::OrthophotoSampler sampler(map.picture, map.world,
                                         texel_area(room.model(), requested.resolution));
   if (progress.cancelled()) return cancelled_problem();
-  Layer colors;  // not stored; its numbers are RGBA values
+  Layer colors;  // temporary; its numbers are RGBA values
   colors.type = ValueType::u32;
   colors.resolution = requested.resolution;
   const auto tiles =

@@ -137,7 +137,7 @@ Result<Response> surface_image_picture(const RouteContext& context, const Reques
     auto number = STRATA_TRY(parse_integer(text, 16, 1024, "thumbnail"));
     side = static_cast<int>(number);
   }
-  // In full size, an image of a scan is equivalent to the file of the scan.
+  // A full-size image of a scan contains the same data as its file.
   if (!side) STRATA_TRY(check_source_download(request, model));
   auto bytes = STRATA_TRY(context.store.surface_images().picture(image.id));
   if (!side) return bytes_response(std::move(bytes), image.media_type);

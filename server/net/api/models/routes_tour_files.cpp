@@ -27,7 +27,7 @@ using Kind = protocol::TourFileKind;
 constexpr const char* kTourFile =
     "Send the file as the body, with its `name` in the address. A tour accepts pictures (JPEG, "
     "PNG, WebP), sounds (MP3, M4A, WAV, FLAC, Ogg), videos (MP4, WebM) and subtitles (WebVTT).";
-constexpr int kMaxSide = 8192;  // of images, because browsers decode them completely
+constexpr int kMaxSide = 8192;  // browsers decode complete images
 
 std::uint64_t max_bytes(Kind kind) {
   switch (kind) {

@@ -144,7 +144,7 @@ Result<Response> change_password(const RouteContext& context, LoginThrottle& gat
   STRATA_TRY(store::check_password(body.password, request.user(), "password"));
   const auto hash = STRATA_TRY(context.store.accounts().password_of(request.user()));
   if (hash.empty()) {
-    // Without a password, nothing proves here that the person of the account is at this browser.
+    // Without a password, the server cannot check that the account's user is at this browser.
     const auto me = STRATA_TRY(context.store.accounts().find(request.user()));
     if (me.has_sign_on)
       return fail(ErrorCode::forbidden, "Account without a password",
@@ -159,7 +159,7 @@ Result<Response> change_password(const RouteContext& context, LoginThrottle& gat
         body.current ? store::password_fits(hash, *body.current) : Result<bool>(false);
     if (!fits) return tl::unexpected(fits.error());
     if (!*fits) {
-      // A wrong password counts as a failed sign-in, even in a browser where the user is signed in.
+      // A wrong password is also a failed sign-in, even in a browser where the user is signed in.
       STRATA_TRY(context.store.audit().failed_sign_in(request.user(), "password"));
       return fail(ErrorCode::invalid, "Wrong current password",
                   "The current password is wrong. Enter it again.", "current");

@@ -19,7 +19,7 @@ Result<Response> reset_demo(const RouteContext& context, const Request& request)
   const auto project = STRATA_TRY(context.store.projects().find(jobs::kDemoProject));
   const auto job = STRATA_TRY(context.jobs.add(
       project.id,
-      // Copies the templates because the queue outlives those in the context.
+      // Copies the templates because the job may run after the context is destroyed.
       [&store = context.store, &rooms = context.rooms,
        templates = context.templates](Progress& progress) -> Result<jobs::JobResult> {
         STRATA_TRY(app::erase_demo_story(store, [&rooms](ModelId model) { rooms.forget(model); }));

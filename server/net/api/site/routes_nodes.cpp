@@ -46,7 +46,7 @@ Result<Response> list_nodes(const RouteContext& context, const Request& request)
   const auto nodes = STRATA_TRY(context.store.nodes().all());
   const auto ownership = STRATA_TRY(context.store.nodes().ownership(kMaxModelsListed));
   // The entries are sorted by the time of the start. Two nodes can start at the same time, so the
-  // id follows as four numbers.
+  // sort key also contains the id.
   const auto part = STRATA_TRY(slice_by(page, nodes, [](const store::Node& node) -> NumberKey {
     NumberKey key = {
         std::chrono::duration_cast<std::chrono::microseconds>(node.started.time_since_epoch())

@@ -23,7 +23,7 @@
 namespace strata::net {
 namespace {
 
-// A failure, as the page names it (web-client/src/features/account/sign-on.ts).
+// The page has a text for each of these codes (web-client/src/features/account/sign-on.ts).
 constexpr std::string_view kUnknown = "unknown_provider", kDenied = "denied", kExpired = "expired",
                            kRefused = "refused", kNoAccount = "no_account", kDisabled = "disabled",
                            kUnreachable = "unreachable", kBusy = "busy";
@@ -99,7 +99,7 @@ Response refused_sign_on(const SignOnRoutes& routes, const std::string& user,
   return to_page(problem);
 }
 
-// Returns an error of a provider for the log, without characters that do not belong to its name.
+// Returns a provider's error code for the log, without characters that no error code contains.
 std::string shown_error(const std::string& error) {
   std::string shown = error.substr(0, kMaxShownError);
   std::erase_if(shown, [](char c) { return !((c >= 'a' && c <= 'z') || c == '_'); });

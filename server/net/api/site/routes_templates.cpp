@@ -158,8 +158,8 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
     auto layers = STRATA_TRY(requested_layers(*of, *room, body.language));
     requested = std::move(layers);
   }
-  // The last operation stores the response for repeated calls. If there are no layers, it is the
-  // creation of the tables.
+  // The last operation stores the response for repeated calls. If there are no layers, the last
+  // operation creates the tables.
   const auto tables_alone = [](const std::vector<store::TableChange>& changes) {
     std::vector<Table> all;
     for (const auto& change : changes) all.push_back(change.table);

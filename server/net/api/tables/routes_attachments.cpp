@@ -97,7 +97,7 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   return answer(attached);
 }
 
-// Lists the attachments by column. Within a column, they have the order of the record's value.
+// Lists the attachments by column. Within a column, the order is as in the record's value.
 Result<Response> list_attachments(const RouteContext& context, const Request& request) {
   auto key = STRATA_TRY(record_key(request));
   auto place = STRATA_TRY(record_place(context, request));

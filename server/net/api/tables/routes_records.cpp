@@ -305,7 +305,7 @@ nlohmann::json report_of(const app::RecordRows& rows, const TableChange& change,
         const auto found = rows.heads.find(column.id);
         head = found == rows.heads.end() ? column.name : found->second;
       }
-    // The problem may be in a record of another table, which is not in the text.
+    // Reports line 1 for a problem in a record of another table, which has no line in the text.
     add(problem.index ? rows.lines[*problem.index] : 1, head, problem.problem);
   }
   const bool refused = !problems.empty();

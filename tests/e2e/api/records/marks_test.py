@@ -1,4 +1,4 @@
-"""Lines and points of records on the surface, such as cracks by the meter and samples by number.
+"""Lines and points of records on the surface, such as measured cracks and numbered samples.
 The file tests them over HTTP, in frames, in tables, and on another version of the scan."""
 import csv
 import io

@@ -98,8 +98,8 @@ def sheet(server):
 
 @pytest.mark.usefixtures("sheet")
 def test_edits(server, reader):
-    """After strokes, fills, erasing and undo, the areas immediately equal those of the
-    statistics."""
+    """After strokes, fills, erasing and undo, the areas immediately equal the areas of
+    the statistics."""
     layers = {}
     for body in (
         {"name": "Marks", "type": "u8"},

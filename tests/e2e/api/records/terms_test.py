@@ -369,7 +369,7 @@ def test_templates(server):
         "Desplacado",
         "Descamación",
     ] and terms[2]["labels"]["en"] == "Flaking", terms
-    # the list has columns for drawing after the columns of every list
+    # after the columns that every term list has, this list has columns for drawing
     kinds = [
         (each["name"], each["kind"])
         for each in server.ok("GET", "/tables/stone-condition-terms/columns").json()["columns"]

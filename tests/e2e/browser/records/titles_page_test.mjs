@@ -75,7 +75,7 @@ test("records are called by the column that their table chooses, and terms open 
   const grid = page.locator("strata-table-panel");
   await grid.getByText("Zinc").first().waitFor();
 
-  // the order is that of the tree, not of the codes or keys
+  // the terms have the order of the tree, not of the codes or keys
   await grid
     .getByRole("columnheader", { name: /^Damage/ })
     .getByRole("button", { name: /^Damage/ })

@@ -28,7 +28,7 @@ function load_playwright() {
   return load_module("playwright-core");
 }
 
-/** Call this first. A missing program then leaves no data behind. */
+/** Call this first, so a test that ends because of a missing program leaves no data. */
 export const require_browser = () => void load_playwright();
 
 /** Console messages after a test stops the server, for every state of the connections. */

@@ -129,7 +129,7 @@ export class Contract {
 
   /**
    * Returns the errors in a request's parameters and JSON according to the contract. The server
-   * must not execute such a request. A parameter without a value may count as absent.
+   * must not execute such a request. The server may ignore a parameter without a value.
    */
   faults_of_request(operation, { query, headers, body }) {
     const faults = [];

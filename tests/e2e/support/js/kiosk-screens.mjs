@@ -90,7 +90,7 @@ export function kiosk_screens_of({ page }, server, { path, kiosk }) {
         await button("Next").waitFor();
         await server.signal("SIGTERM");
         await pass_until(
-          () => page.getByText("Still pictures for a moment").isVisible(),
+          () => page.getByText("Only still pictures at the moment").isVisible(),
           "the sign",
         );
       },

@@ -1000,7 +1000,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
           all: true,
         });
         await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: false });
-        // Otherwise it would arrive during the walk through the next screen, as a control that the
+        // Otherwise the walk through the next screen would find a control of the panel that the
         // keyboard does not reach.
         await page.locator("strata-review-panel").waitFor({ state: "detached" });
       },

@@ -141,7 +141,7 @@ export class StrataServer {
 
   /**
    * Returns the secret for a request as the owner: the token or, for accounts, a session. Tokens
-   * for scripts cannot change accounts. The owner's token counts as such a token once an
+   * for scripts cannot change accounts. The owner's token has the same limit once an
    * administrator has a password.
    */
   async owners_secret(path) {

@@ -100,7 +100,7 @@ const by_schema = {
   Palette: palette,
   At: at,
   CellValues: cells,
-  // the lowest resolution; higher ones use the same code and take long to paint
+  // the lowest resolution; higher ones use the same code but need more time
   Resolution: one(2048),
 };
 export const words = {
@@ -368,7 +368,7 @@ export const particulars = {
   get_job_file: { path: { job: mostly("(a figure's job)", "(a figure's job)", "(a job)") } },
   make_figure: {
     path: { model: one("wall") },
-    // small figures; larger ones use the same code and take long to draw
+    // small figures; larger ones use the same code but need more time
     ...json({
       by_name: {
         dpi: one(50, 60, 20),

@@ -11,8 +11,8 @@ export function loginPathOf(pasted: string): string | null {
 }
 
 /**
- * Returns the secret in the fragment of an address, or an empty string if it has none. Browsers do
- * not send the fragment to the server.
+ * Returns the secret in the fragment of an address, or an empty string without a secret. Browsers
+ * do not send the fragment to the server.
  */
 export const invitationOf = (hash: string): string => /^#([A-Za-z0-9._~-]+)$/.exec(hash)?.[1] ?? "";
 

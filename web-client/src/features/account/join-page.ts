@@ -24,7 +24,7 @@ export class StrataJoinPage extends LitElement {
   @property({ attribute: false }) api!: Api;
   /** The secret of the invitation; empty if the address has none. */
   @property() invitation = "";
-  /** The user who is signed in in this browser. */
+  /** The signed-in user of this browser. */
   @property({ attribute: false }) me: Me | null = null;
   @state() private _person: Person | null = null;
   @state() private _useless = false;

@@ -82,7 +82,7 @@ export class StrataKiosksDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     void this.attempt(() => this.read());
-    // the next interval repeats a failed read
+    // a failed read is repeated after the next interval
     this._timer = window.setInterval(() => void this.read().catch(() => {}), kSilentMs / 6);
   }
 

@@ -23,7 +23,7 @@ const kModelsShown = 3;
 export class StrataNodesDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @state() private _nodes: readonly SiteNode[] | null = null;
-  @state() private _here = ""; // the node that answered
+  @state() private _here = ""; // the node that sent the list
   @state() private _problem = "";
   private _timer = 0;
 
@@ -97,7 +97,7 @@ export class StrataNodesDialog extends LitElement {
     clearInterval(this._timer);
   }
 
-  /** After a failure the last list stays, and the next interval reads it again. */
+  /** Reads the list. After a failure, the dialog keeps the previous list until the next read. */
   private async read(): Promise<void> {
     try {
       const found = await this.api.json("GET /nodes", { query: { limit: 1000 } });

@@ -18,7 +18,8 @@ import { texts } from "../../texts";
 @customElement("strata-sign-in")
 export class StrataSignIn extends LitElement {
   @property({ attribute: false }) api!: Api;
-  @state() private _ways: SignInWays | null = null; // null while the page reads them
+  // null while the page loads them from the server
+  @state() private _ways: SignInWays | null = null;
   @state() private _signOnProblem = "";
   @state() private _problem = "";
   @state() private _tokenProblem = "";

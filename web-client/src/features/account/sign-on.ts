@@ -5,7 +5,7 @@ import { texts } from "../../texts";
 
 const kProblem = "sign_in_problem";
 
-/** Returns the address that begins the sign-in. `here` is the path to open after it. */
+/** Returns the address that begins the sign-in. `here` is the path to open after the sign-in. */
 export function signOnAddress(provider: string, here: string): string {
   const address = `/sign-in/${encodeURIComponent(provider)}`;
   return here === "/" ? address : `${address}?return_to=${encodeURIComponent(here)}`;

@@ -18,7 +18,7 @@ import { toldClock, toldDay, toldTime } from "../../domain/times";
 
 const words = texts.activity;
 
-/** Returns the text of the first key that has one. */
+/** Returns the text of the first key for which `all` has a text. */
 const textOf = (
   all: { readonly [key: string]: string; other: string },
   ...keys: string[]

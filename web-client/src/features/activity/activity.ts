@@ -1,5 +1,5 @@
-// The activity of the open model or of its project: the loaded lines and their targets. It is
-// loaded when the panel opens, and again after each change.
+// The activity of the open model or of its project: the loaded lines and their targets. The lines
+// are loaded when the panel opens, and again after each change.
 
 import { withFirstPage, withNextPage, type ActivityLog } from "../../domain/activity";
 import { ApiError } from "../../net/api-error";
@@ -39,8 +39,8 @@ export class Activities {
   private _watched = false;
   private _log = kNone;
   private readonly _again = new ReadAgain(() => void this.load());
-  // The latest requests. Responses to older ones are ignored. A new first page must not cancel the
-  // request for earlier lines, because the user asked for these.
+  // The numbers of the latest requests. Responses to earlier requests are ignored. A new first page
+  // must not cancel the request for earlier lines, because the user asked for these lines.
   private readonly _asked = { first: 0, next: 0 };
 
   constructor(
@@ -55,7 +55,7 @@ export class Activities {
     return this._log.next !== undefined;
   }
 
-  /** Whether the activity of the whole project is shown, instead of that of this model. */
+  /** True shows the activity of the whole project; false shows only the activity of this model. */
   get whole(): boolean {
     return this._whole;
   }
@@ -102,7 +102,7 @@ export class Activities {
     this.busy = true;
     let isReplaced = false;
     await this.ask("next", before, (page) => {
-      isReplaced = this._log.next !== before; // the page does not continue this log
+      isReplaced = this._log.next !== before; // the log has changed since the request
       if (!isReplaced) this._log = withNextPage(this._log, page);
       this.busy = false;
     });

@@ -56,7 +56,8 @@ export class Appearance {
   section: SectionChoice = noSection();
 
   private _overrides = new Map<number, LookSettings>();
-  // surface images of a saved view, bottom to top; other images are above them in their own order
+  // surface images of a saved view, bottom to top; other images are above them, in the order of
+  // `looks`
   private _stack: number[] = [];
 
   constructor(

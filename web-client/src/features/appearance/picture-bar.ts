@@ -60,7 +60,7 @@ export class StrataPictureBar extends LitElement {
         gap: var(--space-2);
         pointer-events: none;
       }
-      /* they scroll above a tall table; their shadows need the space around them */
+      /* the controls scroll if a tall table leaves little space; the padding shows their shadows */
       .column,
       .beside {
         box-sizing: border-box;

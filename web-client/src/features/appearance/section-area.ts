@@ -11,7 +11,7 @@ import type { ModelSession } from "../../session/model-session";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
-const kRestMs = 300; // time without a change of the section before it is measured
+const kRestMs = 300; // the section is measured after this time without a change
 
 @customElement("strata-section-area")
 export class StrataSectionArea extends LitElement {

@@ -166,7 +166,7 @@ export class StrataViewCube extends LitElement {
   }
 
   private readonly onClick = (event: Event): void => {
-    if (this._drag?.moved) event.stopPropagation(); // the drag turned the model
+    if (this._drag?.moved) event.stopPropagation(); // a drag that rotated the model is not a click
     this._drag = null;
   };
 }

@@ -38,7 +38,7 @@ export class StrataCommentCard extends LitElement {
   @state() private _editing: number | null = null;
   @query("section") private _section!: HTMLElement | null;
   private _shown: number | "new" | null = null;
-  private _opener: HTMLElement | null = null; // the element that had the focus before
+  private _opener: HTMLElement | null = null; // the focused element before the card opened
   private readonly _names = new NameCompletion(this, () => this.session.comments.loadPeople());
 
   constructor() {

@@ -1,5 +1,5 @@
-// The comments on the open model: the loaded threads, the open thread, unsent drafts, and the state
-// of reading.
+// The comments on the open model: the loaded threads, the open thread, unsent drafts, and the read
+// comments.
 
 import { labelOf } from "../../domain/cells";
 import { ApiError } from "../../net/api-error";
@@ -66,7 +66,7 @@ export interface CommentsHost {
   readonly tables: TablesPart;
   model(): Model | null;
   here(): readonly PresenceUser[];
-  /** Runs when a user starts a comment. Other uses of the pointer end. */
+  /** Runs when a user starts a comment, and ends other uses of the pointer. */
   began(): void;
   changed(): void;
 }
@@ -153,9 +153,7 @@ export class Comments {
     this.lookAgain();
   }
 
-  /**
-   * Returns the names of users who are present, who wrote a comment, or who are in the loaded list.
-   */
+  /** Returns the names of all users who are present, wrote a comment, or were loaded as members. */
   get people(): ReadonlySet<string> {
     const names = new Set(this._host.here().map(({ name }) => name));
     names.add(this._me);
@@ -187,8 +185,8 @@ export class Comments {
   }
 
   /**
-   * Runs when the server has identified this user. Earlier events are unknown, so this loads all
-   * comments.
+   * Runs when the server has identified this user. This page has not received earlier events, so it
+   * loads all comments.
    */
   welcome(user: string): void {
     if (user !== this._me) {
@@ -301,7 +299,7 @@ export class Comments {
   lookAgain(): void {
     this._host.changed();
     this.sight.look().catch((error: unknown) => {
-      // until the camera rests again, pins on surfaces that face the camera count as visible
+      // until the camera stops again, the pins are shown as during a movement of the camera
       if (!(error instanceof ApiError)) throw error;
     });
   }
@@ -342,14 +340,15 @@ export class Comments {
   setDraft(of: DraftOf, change: Partial<Omit<Draft, "key">> | null): void {
     if (!this._drafts) return;
     const { [of]: before, ...others } = this._drafts.value;
-    // A changed text is a new request. The server would refuse it with a key that was already sent.
+    // A changed text needs a new key, because the server refuses a different request with a used
+    // key.
     const draft = change && { text: "", ...before, ...change, key: newId() };
     const isEmpty = !draft || (of !== "new" && draft.text === "");
     this._drafts.value = isEmpty ? others : { ...others, [of]: draft };
     this._host.changed();
   }
 
-  /** Sets the subject of the new thread. Null stands for the position itself. */
+  /** Sets the subject of the new thread. With null, the comment is about the position. */
   chooseSubject(subject: number | null): void {
     const { subject: _, ...draft } = this.draft("new") ?? { text: "" };
     this.setDraft("new", null);

@@ -59,7 +59,7 @@ export class NameCompletion {
   async look(field: HTMLTextAreaElement): Promise<void> {
     if (!mentionBegun(field.value, field.selectionStart)) return this.close();
     const all = await this._all();
-    // the user may have typed more while the users loaded
+    // the user may have typed more while the list of users was loading
     const begun = mentionBegun(field.value, field.selectionStart);
     const people = begun && field.matches(":focus") ? peopleLike(all, begun.word) : [];
     const isWhole =

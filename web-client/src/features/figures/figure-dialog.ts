@@ -74,7 +74,7 @@ export class StrataFigureDialog extends LitElement {
     const choices = figureChoices(this._kept.value);
     const { face } = this.session.figures.draft;
     this._choices = choices.from === "face" && !face ? { ...choices, from: "camera" } : choices;
-    // the user asked for the figure of a view
+    // a figure of a saved view initially uses the camera of the view
     if (this.view) this._choices = { ...this._choices, from: "camera" };
     if (choices.scale !== null && !kScales.includes(choices.scale))
       this._scaleTyped = scaleText(choices.scale);
@@ -84,7 +84,7 @@ export class StrataFigureDialog extends LitElement {
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.session.figures.awaited = null; // a notice offers the file instead
+    this.session.figures.awaited = null; // after the dialog has closed, a notice offers the file
     this.session.face.giveUp();
   }
 
@@ -355,8 +355,8 @@ export class StrataFigureDialog extends LitElement {
   }
 
   /**
-   * Hides the dialog while the user picks a face. Shows it again with the picked face, or
-   * unchanged.
+   * Hides the dialog while the user picks a face. Shows it again afterwards, with the picked face
+   * if there is one.
    */
   private async askFace(): Promise<void> {
     this._asking = true;
@@ -400,7 +400,7 @@ export class StrataFigureDialog extends LitElement {
     this.requestUpdate();
   }
 
-  /** Uses the first column if the choice has none. */
+  /** Sets the labels. If the choice has no column, the figure uses the first column. */
   private label(labels: LabelChoice | null): void {
     this.session.figures.draft.labels = labels;
     if (this._problem?.field === "labels") this._problem = null;
@@ -490,7 +490,7 @@ export class StrataFigureDialog extends LitElement {
 
   private readonly onClosed = (): void => {
     this.dispatchEvent(new CustomEvent("closed"));
-    // the browser forgets the opener while the dialog is hidden
+    // the browser does not restore the focus if the dialog was hidden in the meantime
     if (!hasKeyboard()) this._opener?.focus();
   };
 }

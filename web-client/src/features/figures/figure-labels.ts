@@ -10,7 +10,7 @@ import { texts } from "../../texts";
 
 const words = texts.figures;
 
-/** The user's choice. An empty column stands for the first one. */
+/** The user's choice. An empty `column` means the first column. */
 export interface LabelChoice {
   layer: number;
   column: string;
@@ -36,7 +36,8 @@ export function labelsOf(session: ModelSession): FigureLabels | null {
 const valueFor = (event: Event): string => (event.target as HTMLSelectElement).value;
 
 /**
- * `wrong` is whether the field is invalid. `told` is the id of its message, for ARIA attributes.
+ * `wrong` is whether the field is invalid. `told` is the id of the error message, for ARIA
+ * attributes.
  */
 export function labelFields(
   session: ModelSession,

@@ -11,15 +11,17 @@ import { saveBlob } from "../../ui/save-from";
 import { texts } from "../../texts";
 
 export class Figures {
-  /** The draft is kept while the model is open. The dialog shows it again. */
+  /**
+   * The input of the dialog. It is kept while the model is open, so the next dialog shows it again.
+   */
   draft: {
     words: FigureWords;
     labels: { layer: number; column: string } | null;
     face: Face | null;
   } = { words: { title: "", caption: "", credit: "" }, labels: null, face: null };
   /**
-   * The key of the job that the open dialog waits for. Its file is saved immediately. Notices offer
-   * the files of other jobs.
+   * The key of the job that the open dialog waits for. The file of this job is saved immediately.
+   * Notices offer the files of other jobs.
    */
   awaited: number | null = null;
   /** The name of the last saved file. */

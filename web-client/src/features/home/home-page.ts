@@ -51,7 +51,7 @@ export class StrataHomePage extends LitElement {
   @property({ attribute: false }) project: string | null = null;
   /** The projects in which this user may import scans and delete models. */
   @property({ attribute: false }) curated: readonly Project[] = [];
-  /** The project that imports go to, one of `curated`. */
+  /** The project that receives imports; one of `curated`. */
   @property({ attribute: false }) into: Project | null = null;
   /** The number of finished imports. A change reloads the list. */
   @property({ attribute: false }) imported = 0;
@@ -105,8 +105,8 @@ export class StrataHomePage extends LitElement {
     );
   }
   /**
-   * Whether the user can choose among several projects. Until the models are loaded, the number of
-   * projects decides.
+   * Whether the user can choose among several projects. Until the models are loaded, the result
+   * depends only on the number of projects.
    */
   private get hasSeveral(): boolean {
     return this._models
@@ -129,7 +129,7 @@ export class StrataHomePage extends LitElement {
     return (this._models ?? []).filter(({ project }) => !shown || project === shown.slug);
   }
 
-  /** Whether the list is loaded and empty. The page then shows the next step. */
+  /** Whether the list is loaded and empty. If so, the page shows what the user can do next. */
   private get hasNone(): boolean {
     return this._models !== null && this.models.length === 0;
   }

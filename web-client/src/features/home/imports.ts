@@ -39,8 +39,8 @@ export interface ImportResult {
 }
 
 /**
- * A mesh with the files that it may need. The mesh is first and gives the scan its name. The name
- * includes folders if other meshes have the same file name.
+ * A mesh with the files that it may need. The mesh is the first file. The name of the scan is the
+ * file name of the mesh, with folders if other meshes have the same file name.
  */
 export type ScanFiles = readonly [DroppedFile, ...DroppedFile[]];
 export interface Scan {
@@ -52,8 +52,8 @@ const folderOf = (path: string): string => path.slice(0, path.lastIndexOf("/") +
 const stemOf = (path: string): string => path.replace(/\.[^./]*$/, "");
 
 /**
- * Returns the name of each mesh, from its file name. Meshes with the same file name get as many
- * folder names as they need to be unique.
+ * Returns the name of each mesh, from its file name. If several meshes have the same file name,
+ * their names include as many folders as necessary to be unique.
  */
 function namesOf(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
   const nameOf = ({ path }: DroppedFile, folders: number): string => {
@@ -73,13 +73,13 @@ function namesOf(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
 }
 
 /**
- * Selects the scans from the dropped files. A single mesh gets all companion files. Of several
- * meshes, each gets the files whose paths start with its own path. A notice reports the other
- * files.
+ * Selects the scans from the dropped files. A single mesh gets all companion files. If there are
+ * several meshes, each mesh gets the companion files whose paths start with the path of the mesh
+ * without its extension. A notice reports the remaining files.
  */
 export function chooseScans(files: readonly DroppedFile[]): Scan[] {
   const meshes = files.filter(({ path }) => kScans.test(path));
-  // without a mesh, each file becomes a scan, so the refusal by the server names each file
+  // without a mesh, each file becomes a scan, so each file gets an error message
   if (meshes.length === 0)
     return files.map((file): Scan => ({ files: [file], name: nameOfFile(file.file.name) }));
   const companions = files.filter(({ path }) => kCompanions.test(path));
@@ -123,7 +123,7 @@ export class Imports {
     return () => this._listeners.delete(listener);
   }
 
-  /** Imports the scan into the project with that slug. */
+  /** Imports the scan into a project, given by its slug. */
   async start(scan: Scan, project: string): Promise<ImportResult> {
     const [{ file }] = scan.files;
     const refusal = !kScans.test(file.name)

@@ -22,7 +22,7 @@ export class ProjectChange {
     private readonly _project: Project,
   ) {}
 
-  /** Returns null if another user has changed the project. `name` is then the new name. */
+  /** Returns null if another user has changed the project, and `name` returns the new name. */
   async save({ name, text }: Called, requireIfMatch: boolean): Promise<Project | null> {
     const { slug } = this._project;
     const { value, etag } =

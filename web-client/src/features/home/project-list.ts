@@ -43,8 +43,8 @@ export function listProjects(
 }
 
 /**
- * Returns whether the models of the project have a project page as their parent. This requires
- * other projects, which may be empty.
+ * Returns whether the list contains this project and at least one other project, which may be
+ * empty. In this case, the home link of a model leads to the page of the project.
  */
 export const isOneOfSeveral = (slug: string, projects: readonly Project[]): boolean =>
   projects.length > 1 && projects.some((project) => project.slug === slug);

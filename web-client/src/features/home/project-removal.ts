@@ -11,8 +11,8 @@ export const isNameOf = (typed: string, { name }: Project): boolean =>
 const asSeen = (text: string): string => text.normalize().trim().replace(/\s+/g, " ");
 
 /**
- * Deletes the project and its tables, which no layer may use at that time. Parts that are already
- * deleted count as success, so the call can be repeated.
+ * Deletes the project and its tables, which no layer may use at that time. A part that is already
+ * deleted is not an error, so the call can be repeated.
  */
 export async function removeProject(
   api: Api,

@@ -322,7 +322,7 @@ export class StrataColorDialog extends LitElement {
     if (column) void this.classify(column);
   }
 
-  /** Requests the classes and shows them. Only the latest request counts. */
+  /** Requests the classes and shows them. Ignores a response if a later request was sent. */
   private async classify(column: Column): Promise<void> {
     const asked = ++this._asked;
     const { layer, _method: method, _count: count, _ramp: ramp } = this;

@@ -53,7 +53,10 @@ interface Problem {
 export class StrataExpressionField extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property() label = "";
-  /** Whether the expression may also be a number. It can then contain normals and similar names. */
+  /**
+   * Whether the expression may also be a number. If so, it can also use the names that work only in
+   * computed layers, such as normals.
+   */
   @property({ type: Boolean }) computes = false;
   @property() initial = "";
   /** Whether the area is highlighted in the 3D view. */
@@ -425,7 +428,7 @@ export class StrataExpressionField extends LitElement {
       const isNumber =
         error instanceof ApiError && error.problem.reason === "expects_condition" && this.computes;
       if (!isNumber) throw error;
-      // the addition is at the end, so the positions of mistakes do not change
+      // the text is added at the end, so the positions of mistakes do not change
       return { area: await this.select(`${text}\nis not null`, signal), told: words.known };
     }
   }

@@ -57,7 +57,7 @@ export class StrataLayerDialog extends LitElement {
 
   /** The layer and its version when the dialog opened. */
   @state() private _base: { layer: Layer; etag: string } | null = null;
-  @state() private _stale = false; // another user has changed the layer since
+  @state() private _stale = false; // another user has changed the layer since the dialog opened
   @state() private _purpose: Purpose = "presence";
   @state() private _color = "#d55e00ff";
   @state() private _classes: ClassRow[] = [];

@@ -20,14 +20,17 @@ export class LayerList {
   all: Layer[] = []; // in this user's order; the last one is on top
   selectedId: number | null = null;
 
-  // the applied settings: those of a saved view, with later changes
+  // the applied settings: the settings of a saved view, with later changes
   private _overrides = new Map<number, LayerShown>();
   private _own = new Map<number, LayerShown>(); // the stored settings
   private _atView = false;
   private readonly _keeper: PersonalViewKeeper;
   /** Palettes that a dialog shows until the user chooses. They are not stored as a default. */
   private readonly _previewed = new Map<number, Palette>();
-  /** Records that are highlighted temporarily. They take precedence over those of a view. */
+  /**
+   * Records that are highlighted temporarily. They take precedence over the highlighted records of
+   * a view.
+   */
   private readonly _highlights = new Map<number, Highlight>();
 
   constructor(

@@ -124,8 +124,8 @@ export class StrataLayerPanel extends LitElement {
   }
 
   /**
-   * `to` is the index in the list without the dragged row. The row joins the group of the row under
-   * the pointer. Between two rows of one group, it joins that group.
+   * Moves the dragged row. `to` is the new index in the list without this row. The row joins the
+   * group of the row under the pointer, or of the two rows between which it is dropped.
    */
   private drop(id: number | string, to: number, over: number | null): void {
     const layer = this.session.layers.find(Number(id));
@@ -147,7 +147,7 @@ export class StrataLayerPanel extends LitElement {
     this.move({ ...layer, group: group || undefined }, this.placeOf(layer, above, below));
   }
 
-  /** Returns the index of `layer` in the list without it, between two rows. */
+  /** Returns the index for `layer` between two rows, in the list without `layer`. */
   private placeOf(
     layer: Layer,
     above: Layer | string | undefined,

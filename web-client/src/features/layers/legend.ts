@@ -102,7 +102,9 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
   return gradient(palette, unit);
 }
 
-/** Orders the points of terms as in the list of terms, each with its depth in the tree. */
+/**
+ * Sorts the points by their position in the list of terms. Adds the depth of each term in the tree.
+ */
 function inTree(
   points: readonly PalettePoint[],
   terms: TermTree | null,

@@ -1,5 +1,5 @@
-// A map can have a coordinate system although the model has none. The page then asks whether the
-// model's coordinates are in that system, before it sends the map.
+// A map can have a coordinate system although the model has none. In this case, the page asks
+// whether the model's coordinates are in the same system, before it sends the map.
 
 import { css, html, type TemplateResult } from "lit";
 import type { MapContents, Model } from "../../core/types";

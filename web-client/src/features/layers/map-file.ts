@@ -103,7 +103,8 @@ export interface ColorRow {
 }
 
 /**
- * Returns the detected colors, each with the next of the values. The paper's color gets no value.
+ * Returns the detected colors, and assigns the values to them in order. The paper's color gets no
+ * value.
  */
 export function colorRows(colors: readonly MapColor[], values: readonly number[]): ColorRow[] {
   let next = 0;

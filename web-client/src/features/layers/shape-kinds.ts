@@ -92,7 +92,7 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
     recipe.model = input.model;
   }
   if (takes.includes("property")) {
-    // a source contains no slash, but a property's name may
+    // only the name of a property can contain slashes, not the source
     const slash = input.property.indexOf("/");
     if (slash < 0) return { problem: texts.shape.property_missing, field: "property" };
     recipe.source = input.property.slice(0, slash);

@@ -337,7 +337,10 @@ export class StrataStatisticsDialog extends LitElement {
       <p class="hint" role="status">${words.range(`${formatNumber(palette.min, 4)}${unit}`, `${formatNumber(palette.max, 4)}${unit}`)}</p>`;
   }
 
-  /** Saves one change at a time. Each key press is a change, and the last one remains. */
+  /**
+   * Saves one change at a time. Each key press is a change. If several changes wait, only the last
+   * of them is saved.
+   */
   private async saveRange(): Promise<void> {
     if (this._saving) return;
     this._saving = true;

@@ -11,7 +11,7 @@ import { faces } from "../../session/pin-sight";
 interface Seen {
   x: number; // in CSS pixels
   y: number;
-  /** Whether the surface there faces the camera and is not cut away. */
+  /** Whether the surface at the point faces the camera and is not cut away. */
   towards: boolean;
 }
 
@@ -87,8 +87,8 @@ function project(
 }
 
 /**
- * Returns the path of the lines between consecutive points that `wanted` accepts. Omits lines to a
- * point behind the eye.
+ * Returns the path of the lines between consecutive points that `wanted` accepts. Omits lines to
+ * points behind the camera.
  */
 function segments(
   places: readonly (Seen | null)[],

@@ -12,7 +12,7 @@ export interface MeasureHost extends Navigator {
   end(): void;
   takeBack(): void;
   clear(): void;
-  /** Returns whether there are points, or a tap waits for its point. */
+  /** Returns whether there are points, or a tap that is still being processed. */
   begun(): boolean;
 }
 

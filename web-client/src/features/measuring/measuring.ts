@@ -61,12 +61,12 @@ export interface MeasuredProfile {
 
 export const kMostPlaces = 100;
 const kNearestSteps = 1000;
-const kReachPx = 4; // a point counts as visible if the line passes within this distance
+const kReachPx = 4; // a point is visible if the line on the surface passes it within this distance
 const kReach = 0.001; // added to this distance, as a share of the model's radius
 
 export class Measuring {
   places: readonly MeasuredPlace[] = [];
-  /** Whether the measurement is complete. The next tap then starts a new one. */
+  /** Whether the measurement is complete, so the next tap starts a new one. */
   ended = false;
   profile: MeasuredProfile | null = null;
   /** Whether a request for the surface between the points is pending. */
@@ -82,8 +82,8 @@ export class Measuring {
   private _seenBy: CameraMessage | null = null;
   private _work: Promise<void> = Promise.resolve(); // taps are processed one at a time
   private _waiting = 0; // the number of pending taps
-  private _count = 0; // the number of measurements; responses to earlier ones are ignored
-  private _asked = 0; // the number of profile requests; only the latest counts
+  private _count = 0; // the number of measurements; responses for earlier measurements are ignored
+  private _asked = 0; // the number of profile requests; only the response to the latest one is used
   private readonly _soFar: LineMeasure<MarkPlace | null>;
 
   constructor(
@@ -121,7 +121,7 @@ export class Measuring {
   get tip(): Point | null {
     return this.open && this._pointer ? [this._pointer.x, this._pointer.y] : null;
   }
-  /** Whether there are points, or a tap waits for its point. */
+  /** Whether there are points, or a tap that is still being processed. */
   get begun(): boolean {
     return this.places.length > 0 || this._waiting > 0;
   }
@@ -213,8 +213,8 @@ export class Measuring {
   }
 
   /**
-   * Chooses between the line as the current camera sees it and the nearest points to its straight
-   * legs.
+   * Sets how the line follows the surface: as the current camera sees it, or through the surface
+   * points that are nearest to the straight legs.
    */
   chooseWay(way: Way): void {
     this._way = way;
@@ -249,7 +249,9 @@ export class Measuring {
 
   // ── events ─────────────────────────────────────────────────────────────────────────────────────
 
-  /** The length of the line to the pointer is valid only for the previous camera. */
+  /**
+   * Ends the measurement of the line to the pointer, because its pixels belong to the old camera.
+   */
   cameraMoved(): void {
     this._soFar.follow(null);
   }
@@ -305,7 +307,7 @@ export class Measuring {
       .finally(() => void (this._waiting -= isCurrent() ? 1 : 0));
   }
 
-  /** Requests the profile. Until it arrives, a known profile of the same points is kept. */
+  /** Requests the profile. Until the response arrives, keeps a known profile of the same points. */
   private async learn(camera: OrbitCamera): Promise<void> {
     const model = this._host.model();
     if (!model || this.places.length < 2) return;

@@ -13,8 +13,8 @@ export const stepsFor = (canPaint: boolean): StepName[] =>
   kSteps.filter((name) => canPaint || !kForPainters.includes(name));
 
 /**
- * Returns the step itself if its element is present, else the next step whose element is present,
- * or else the last one. Returns null if no element is present.
+ * Returns the step itself if its element is present. Otherwise returns the next step whose element
+ * is present, or the last such step. Returns null if no element is present.
  */
 export function nearestStep(name: StepName, there: readonly StepName[]): StepName | null {
   const after = kSteps.slice(kSteps.indexOf(name)).find((each) => there.includes(each));

@@ -37,7 +37,7 @@ export class StrataOnboarding extends LitElement {
   @query("section") private _card!: HTMLElement | null;
   @query(".ring") private _ring!: HTMLElement | null;
   @query("button.primary") private _next!: HTMLButtonElement | null;
-  private _opener: HTMLElement | null = null; // the element that had the focus before
+  private _opener: HTMLElement | null = null; // the focused element before the introduction started
   private _hasKeyboard = false;
 
   constructor() {
@@ -126,7 +126,10 @@ export class StrataOnboarding extends LitElement {
     if (this._step !== null) this.requestUpdate();
   };
 
-  /** Starts on request. Takes the keyboard focus, and returns it at the end. */
+  /**
+   * Starts on request. Moves the keyboard focus to the card; at the end, the focus returns to its
+   * previous element.
+   */
   async start(): Promise<void> {
     this._opener = hasKeyboard();
     this.go(kSteps[0]);

@@ -47,7 +47,7 @@ export class AreaSelection implements FinishedOutlines {
   outlines: readonly SelectedOutline[] = [];
   /** The mode of the pressed button. Keys held at the start of an outline take precedence. */
   mode: SelectionMode = "replace";
-  /** Null while it is unknown. */
+  /** The measured selection; null while it is unknown. */
   measured: SelectResponse | null = null;
   /** The corner that was pressed last. It can be deleted. */
   active: CornerPlace | null = null;

@@ -25,7 +25,7 @@ import "../../session/fields/value-picker";
 
 const kSliderSteps = 1000;
 
-/** Requests the dialog that fills by a condition. */
+/** A request to open the dialog that fills by a condition. */
 export type WhereRequest = { dialog: "where"; layer: Layer };
 
 @customElement("strata-brush-panel")

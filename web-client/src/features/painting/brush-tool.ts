@@ -6,12 +6,15 @@ import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";
 
 export interface BrushHost {
-  /** Returns null if painting is not possible. The host has then shown the reason. */
+  /**
+   * Returns null if painting is not possible. In this case, the host has shown the reason to the
+   * user.
+   */
   beginStroke(erase: boolean): StrokeHandle | null;
   strokeEnded(): void;
   /**
-   * Returns the radius in window pixels at the pointer. Points closer than a tenth of it are
-   * omitted.
+   * Returns the radius in window pixels at the pointer. The tool omits points that are closer than
+   * a tenth of this radius to the previous point.
    */
   radiusPx(): number;
   /** Returns the brush's radius at this pen pressure, as a share of the full radius. */
@@ -81,7 +84,7 @@ export class BrushTool implements Tool {
     this.finish();
   }
 
-  /** The painted part stays. The user can undo it. */
+  /** Ends the stroke. The painted part remains, and the user can undo it. */
   cancel(): void {
     this.finish();
   }

@@ -128,7 +128,9 @@ export class Painting {
     return this.brush.pressure ? Math.min(1, Math.max(kThinnest, pressure)) : 1;
   }
 
-  /** Ends the stroke for the server, even if the user continues to draw. The painted part stays. */
+  /**
+   * Ends the stroke for the server, even if the user continues to draw. The painted part remains.
+   */
   breakOff(): void {
     this._stroke?.end();
   }

@@ -85,7 +85,8 @@ export class StrataShapeDialog extends LitElement {
       this._problem = texts.shapes.unreadable(this.file.name);
       return;
     }
-    // The analysis omits the square around the picture, because it would count as transparent.
+    // The analysis omits the square around the picture, because it would treat the square as
+    // transparent.
     const { width, height } = this._picture;
     const { width: smallWidth, height: smallHeight } = inSquare(width, height, kShapeSide);
     const canvas = new OffscreenCanvas(

@@ -13,7 +13,7 @@ export interface ComparedLayer {
 }
 
 export class ChangedArea {
-  /** Null while it is unknown. */
+  /** The measured difference; null while it is unknown. */
   measured: Pick<SelectResponse, "texels" | "area_m2" | "share"> | null = null;
   problem = "";
   private _followed = "";

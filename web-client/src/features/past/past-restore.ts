@@ -26,7 +26,7 @@ export class StrataPastRestore extends LitElement {
   @state() private _layer: number | null = null;
   @state() private _count: Difference | null = null;
   @state() private _working = false;
-  private _counted = ""; // the layer, state and part of `_count`
+  private _counted = ""; // the layer, state and part to which `_count` applies
   private _asked = 0;
 
   constructor() {

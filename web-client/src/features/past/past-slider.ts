@@ -30,7 +30,7 @@ export function peopleText({
   return formatList(others > 0 ? [...names, words.others(others)] : names);
 }
 
-/** Returns the names of the layers. Omits layers that were deleted since. */
+/** Returns the names of the layers. Omits layers that were deleted later. */
 export const layersText = (session: ModelSession, layers: readonly number[]): string =>
   formatList(
     layers.flatMap((id) => {

@@ -132,7 +132,7 @@ export class Past {
     else void this.open();
   }
 
-  /** Opens the timeline. With `time`, shows the state of that time. */
+  /** Opens the timeline. With `time`, shows the state at that time. */
   async open(time?: string): Promise<void> {
     this.isOpen = true;
     this._host.changed();
@@ -167,13 +167,13 @@ export class Past {
     this._host.changed();
   }
 
-  /** The connection is new, so the server has no earlier request of this page. */
+  /** Call this on each new connection. The server has not received any request of this page yet. */
   welcome(): void {
     this.drawn = null;
     this._host.changed();
   }
 
-  /** After edits by others, the timeline becomes longer. */
+  /** Loads the timeline again after edits by other users, because the timeline is longer now. */
   outdated(): void {
     if (this.isOpen && !this.isActive && !this.isZoomed) void this.load();
   }
@@ -377,7 +377,7 @@ export class Past {
   /** Call this after a frame of the view of the past was displayed. */
   frameDrawn({ header }: FrameMessage): void {
     if (!this.isActive || header.scene_sequence === this.drawn) return;
-    // The server sends the newest state until it has loaded the first past one.
+    // Until the server has loaded the past state, it sends frames of the newest state.
     if (this.drawn === null && header.scene_sequence !== this.at) return;
     this.drawn = header.scene_sequence;
     this._host.changed();
@@ -398,7 +398,10 @@ export class Past {
 
   // ── restoring ──────────────────────────────────────────────────────────────────────────────────
 
-  /** Lets the user draw the part. Until then the part is null, which means the whole layer. */
+  /**
+   * Lets the user draw the part. Until the user has drawn it, the restore applies to the whole
+   * layer.
+   */
   drawPart(): void {
     this.part = null;
     this.drawsPart = true;
@@ -416,8 +419,8 @@ export class Past {
   }
 
   /**
-   * Returns the difference that the restore would make. Returns null if it is unknown, after
-   * showing the reason to the user.
+   * Returns the texels and the area that the restore would change. If the request fails, shows the
+   * reason to the user and returns null.
    */
   async count(layer: number): Promise<Difference | null> {
     if (this.at === null) return null;

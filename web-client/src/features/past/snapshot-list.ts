@@ -23,7 +23,7 @@ const words = texts.snapshots;
 @customElement("strata-snapshot-list")
 export class StrataSnapshotList extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  /** The list remains the same object after a change. */
+  /** The same object after each change, so Lit cannot detect changes by comparison. */
   @property({ attribute: false, hasChanged: () => true }) snapshots!: Snapshots;
   /** The snapshot that the user is naming; "new" for the displayed state. */
   @state() private _naming: Snapshot | "new" | null = null;

@@ -27,7 +27,8 @@ export class Snapshots {
     return this._known.failed;
   }
   /**
-   * The snapshots by state, with the earliest first. Those of one state are in order of creation.
+   * The snapshots by state, with the earliest first. Snapshots of the same state are in order of
+   * creation.
    */
   get all(): Snapshot[] {
     return this._known.all.sort((a, b) => a.sequence - b.sequence || a.id - b.id);
@@ -45,7 +46,8 @@ export class Snapshots {
   }
 
   /**
-   * A null `at` stands for the newest state. `key` is the same for all attempts at one snapshot.
+   * Creates a snapshot. A null `at` means the newest state. `key` is the same for all attempts to
+   * create one snapshot.
    */
   async create(
     called: { name: string; text: string },
@@ -62,8 +64,8 @@ export class Snapshots {
   }
 
   /**
-   * Changes the loaded version. If another user has changed it since, throws an ApiError with
-   * status 412 and reloads the list.
+   * Changes a snapshot. If another user has changed it since this page loaded it, throws an
+   * ApiError with status 412 and reloads the list.
    */
   async rename({ id, version }: Snapshot, called: { name: string; text: string }): Promise<void> {
     await this.newestAfter(async () =>
@@ -77,8 +79,8 @@ export class Snapshots {
     );
   }
   /**
-   * Deletes the loaded version. Throws the same ApiError as rename() if another user has changed it
-   * since.
+   * Deletes a snapshot. If another user has changed it since this page loaded it, throws the same
+   * ApiError as rename().
    */
   async remove({ id, version }: Snapshot): Promise<void> {
     await this.newestAfter(() =>

@@ -1,5 +1,5 @@
-// The user's own steps. Loads them from the server, and moves to a step by one undo or redo at a
-// time.
+// The user's own steps. This file loads the steps from the server, and moves to a step by one undo
+// or redo at a time.
 
 import type { Api } from "../../net/api";
 import { ApiError } from "../../net/api-error";
@@ -98,7 +98,7 @@ export class Steps {
   }
 
   private async go(target: UndoStep | null): Promise<Outcome> {
-    await this.read(); // others may have undone or rejected some steps since
+    await this.read(); // other users may have undone or rejected some steps in the meantime
     const turns = this._known && !this.failed ? turnsTo(this._known, target) : [];
     let done = 0;
     try {

@@ -51,7 +51,7 @@ export class Visits {
       this._changed();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      // a failure to load the news is not reported
+      // if the changes cannot be loaded, the page shows no error
     }
   }
 
@@ -80,7 +80,7 @@ export class Visits {
       const stored: unknown = JSON.parse(localStorage.getItem(kKey) ?? "{}");
       return typeof stored === "object" && stored !== null ? (stored as Record<string, Visit>) : {};
     } catch {
-      return {}; // no storage, or another kind of value
+      return {}; // the storage is not available, or its value is not JSON
     }
   }
 

@@ -1,5 +1,5 @@
 // <strata-people-overlay>: the pointers of other participants over the 3D view. Mouse events pass
-// through it. It renders itself without the page while the pointers move.
+// through it. While the pointers move, only this element is rendered again, not the page.
 
 import { css, html, LitElement, svg, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -134,8 +134,8 @@ export class Together {
   }
 
   /**
-   * Handles the problem if the server refused a request of this class, or refused that this user
-   * follows a participant. Returns whether it handled the problem.
+   * Handles the problem if the server refused a request of this class, or a request to follow a
+   * participant. Returns whether it handled the problem.
    */
   refused({ ref, field, status, detail }: Omit<ProblemMessage, "op">): boolean {
     if (this._middle.refused(ref)) return true;

@@ -98,7 +98,8 @@ export class StrataHoverCard extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     this.setAttribute("aria-hidden", "true");
-    addEventListener("keydown", this.onKey, { capture: true }); // for every focused element
+    // receives the keys of every focused element
+    addEventListener("keydown", this.onKey, { capture: true });
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();

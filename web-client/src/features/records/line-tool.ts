@@ -1,5 +1,5 @@
-// A line on the surface: drawn freehand, or set point by point. The camera stays fixed during
-// drawing, as for areas.
+// A line on the surface: drawn freehand, or set point by point. The camera does not move during
+// drawing.
 
 import type { Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
@@ -66,7 +66,7 @@ export class LineTool extends PlacesTool implements Tool {
     if (press?.first && press.dragged) this.finish();
   }
 
-  /** A second finger on the screen undoes the press of the first one. */
+  /** A second finger on the screen undoes the press of the first finger. */
   cancel(): void {
     const press = this._press;
     this._press = null;

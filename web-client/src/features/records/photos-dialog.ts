@@ -179,7 +179,7 @@ export class StrataPhotosDialog extends LitElement {
     this._timer = setTimeout(() => void this.match(), kAskMs);
   }
 
-  /** Requests the matches. Only the latest request counts. */
+  /** Requests the matches. Ignores a response if a later request was sent. */
   private async match(): Promise<void> {
     const asked = ++this._asked;
     const { _pattern: pattern, _column: column, names } = this;

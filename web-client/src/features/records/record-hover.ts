@@ -1,5 +1,6 @@
-// The record under the mouse pointer while the pointer does not move. A click there would open its
-// card. This class sends no requests, because it uses the responses to the pointer's requests.
+// The record under the mouse pointer while the pointer does not move. A click at this position
+// opens the card of the record. This class sends no requests, because it uses the responses to the
+// pointer's requests.
 
 import type { PointerSample } from "../../ui/input";
 import type { Layer } from "../../core/types";
@@ -25,12 +26,12 @@ export interface RecordHoverHost {
 export class RecordHover {
   private _shown: RecordAt | null = null;
   private _from: PointerSample | null = null; // the position where the mouse stopped
-  // if it is null while `_from` is set, the delay is over
+  // null although `_from` is set: the delay has ended
   private _timer: ReturnType<typeof setTimeout> | null = null;
 
   constructor(private readonly _host: RecordHoverHost) {}
 
-  /** Null after the pointer has left the record for any reason. */
+  /** The record to show; null after the pointer has left it for any reason. */
   get shown(): RecordAt | null {
     const here = this._shown && this._host.here();
     return here && here.layer.id === this._shown?.layer.id && here.key === this._shown.key
@@ -38,7 +39,10 @@ export class RecordHover {
       : null;
   }
 
-  /** Takes a mouse position without a pressed button, or null if there is no mouse. */
+  /**
+   * Handles a mouse position without a pressed button. Null means that the mouse has left, or that
+   * another pointer is used.
+   */
   move(sample: PointerSample | null): void {
     if (!sample) this.end();
     else if (
@@ -49,7 +53,7 @@ export class RecordHover {
     else if (this.shown) this._from = sample;
   }
 
-  /** Call this when the values under the pointer are known again. */
+  /** Call this after a response with the values under the pointer. */
   picked(): void {
     if (this.shown) return;
     // the mouse has left the record; the next card appears after the same delay
@@ -57,14 +61,17 @@ export class RecordHover {
     else if (this._from && !this._timer) this.show();
   }
 
-  /** The view moved under the mouse, so the delay starts again. */
+  /** Starts the delay again, because the view moved under the mouse. */
   waitAgain(): void {
     const told = this.shown !== null;
     if (this._from) this.restFrom(this._from);
     if (told) this._host.changed();
   }
 
-  /** The user does something else. The next mouse movement starts the delay. */
+  /**
+   * Hides the record, because the user does something else. The next mouse movement starts the
+   * delay.
+   */
   end(): void {
     const told = this.shown !== null;
     this.stopWaiting();

@@ -18,7 +18,10 @@ export interface RecordSightHost {
 export class RecordSight {
   constructor(private readonly _host: RecordSightHost) {}
 
-  /** Returns the selected layer if it has a record there, else the topmost layer that has one. */
+  /**
+   * Returns the selected layer if it has a record at the point, or otherwise the topmost layer with
+   * a record.
+   */
   layerWithRecord(picked: Picked): Layer | null {
     const { selected, all } = this._host.layers;
     if (selected && this.showsRecord(selected, picked)) return selected;

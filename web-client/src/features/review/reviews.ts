@@ -52,7 +52,7 @@ export class Reviews {
   get failed(): boolean {
     return this._failed.size > 0;
   }
-  /** Whether a layer requires review, or edits are still waiting. */
+  /** Whether a layer requires review, or any edits still wait for review. */
   get isUsed(): boolean {
     return this._host.layers.all.some((layer) => layer.review) || this.count > 0;
   }

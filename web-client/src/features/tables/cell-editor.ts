@@ -41,7 +41,10 @@ interface Editing {
   typed: string | null;
 }
 
-/** Callbacks to the table, with positions of cells. Columns count from 1, after the key. */
+/**
+ * Callbacks to the table, with positions of cells. Column 0 is the key, and the columns of the
+ * table begin at 1.
+ */
 export interface CellEditorHost extends ReactiveControllerHost {
   readonly session: ModelSession;
   readonly view: TableView;

@@ -25,7 +25,7 @@ import { formStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.column_filter;
-const kSearched = 8; // a search field appears from this number of values
+const kSearched = 8; // a search field appears for at least this number of values
 const kMostShown = 300;
 
 interface Line {

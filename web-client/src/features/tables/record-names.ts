@@ -57,8 +57,9 @@ export class RecordNames {
   }
 
   /**
-   * Finds records by name or key. Names that start with the text are first, then those that contain
-   * it. Both parts follow the order of the term list, or the alphabet of the user's language.
+   * Finds records by name or key. Names that start with the text are first, followed by other names
+   * that contain it. Both parts follow the order of the term list, or the alphabet of the user's
+   * language.
    */
   search(text: string): NamedRecord[] {
     this.want();

@@ -22,8 +22,8 @@ export interface RecordRowsHost {
   ask(query: RecordQuery): Promise<RecordList>;
   changed(): void;
   /**
-   * Call this after a change to a record's lines or points. Its measures on the model are then
-   * unknown.
+   * Call this after a change to a record's lines or points. Until the next response, its measures
+   * on the model are unknown.
    */
   measuresOutdated(): void;
 }

@@ -1,5 +1,5 @@
-// A table that is open below the stage: its rows, edits and selection. Its areas are those of one
-// layer.
+// A table that is open below the stage: its rows, edits and selection. The table shows the areas of
+// the records on one layer.
 
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";

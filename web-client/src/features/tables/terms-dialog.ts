@@ -111,7 +111,7 @@ export class StrataTermsDialog extends LitElement {
       : api.json("POST /tables/{table}/terms", { path: { table: this.table }, query, body, type });
   }
 
-  /** Previews the changes. Only the latest request counts. */
+  /** Previews the changes. Ignores a response if a later request was sent. */
   private async look(file: File): Promise<void> {
     const asked = ++this._asked;
     const type = termsType(file.name);

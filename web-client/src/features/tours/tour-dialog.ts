@@ -56,7 +56,8 @@ export class StrataTourDialog extends LitElement {
   @state() private _trying = false;
   @state() private _busy = false;
   @state() private _problem: { field: string; text: string } | null = null;
-  @state() private _theirs: Tour | null = null; // a version that another user has saved since
+  // the version that another user has saved in the meantime
+  @state() private _theirs: Tour | null = null;
   @query("strata-dialog") private _dialog!: StrataDialog | null;
   @query("strata-tour-stop-fields") private _fields!: StrataTourStopFields | null;
   // the version that this user has seen; null before the tour is created
@@ -215,7 +216,7 @@ export class StrataTourDialog extends LitElement {
       yes: words.leave_yes,
       danger: true,
     }).finally(() => (this._asked = null));
-    return this._asked; // all attempts to leave wait for the same question
+    return this._asked; // all attempts to leave wait for the answer to the same question
   };
 
   // ── rendering ──────────────────────────────────────────────────────────────────────────────────
@@ -492,5 +493,5 @@ const told = ({ wrong, range }: DraftProblem): string =>
   wrong === "seconds"
     ? words.wrong_seconds(...(range ?? [0, 0]))
     : wrong === "contrast"
-      ? "" // <strata-tour-design> shows the problem with the numbers
+      ? "" // <strata-tour-design> shows this problem with the contrast values
       : words.wrong[wrong];

@@ -51,7 +51,7 @@ export class Tours {
     }
   }
 
-  /** `key` is the idempotency key, the same for all attempts at one tour. */
+  /** `key` is the idempotency key, the same for all attempts to create one tour. */
   async make(tour: TourCreate, key: string): Promise<Tour> {
     return this.put(
       await this._api.json("POST /models/{model}/tours", {
@@ -62,8 +62,8 @@ export class Tours {
     );
   }
   /**
-   * Changes the loaded version. If another user has changed the tour since, throws an ApiError with
-   * status 412.
+   * Changes a tour. If another user has changed the tour since this page loaded it, throws an
+   * ApiError with status 412.
    */
   async change(
     { id, version }: { id: number; version: number },
@@ -95,8 +95,8 @@ export class Tours {
     return thumbnail ? `${address}?thumbnail=${thumbnail}` : address;
   }
   /**
-   * Deletes the loaded version. Throws the same ApiError as change() if another user has changed it
-   * since.
+   * Deletes a tour. If another user has changed the tour since this page loaded it, throws the same
+   * ApiError as change().
    */
   async remove({ id, version }: TourEntry): Promise<void> {
     try {

@@ -51,7 +51,7 @@ export class StrataViewList extends LitElement {
       li:has(> .go[aria-current="true"]) {
         background: var(--accent-soft);
       }
-      /* also under the pointer, because text is hard to read on two tints */
+      /* no background under the pointer either, because text is hard to read on two tints */
       li button.go[aria-current="true"]:not(:disabled) {
         background: none;
       }

@@ -1,4 +1,4 @@
-// The saved views of the open model: lists them, applies them, and returns to the state before.
+// The saved views of the open model: lists them, applies them, and restores the previous state.
 
 import { ApiError } from "../../net/api-error";
 import { type Api, ifVersion } from "../../net/api";
@@ -68,8 +68,8 @@ export class Views {
   }
 
   /**
-   * Runs when the server has identified this user. Earlier events are unknown, so this loads all
-   * views.
+   * Runs when the server has identified this user. This page has not received earlier events, so it
+   * loads all views.
    */
   welcome(user: string): void {
     this._me = user;
@@ -161,7 +161,8 @@ export class Views {
 
   private show(view: View): void {
     const { view: control, layers, appearance, tables } = this._host;
-    const wasAtView = this.isAtView; // if true, the saved state to return to is kept
+    // if true, the state from before the first applied view is kept
+    const wasAtView = this.isAtView;
     const { place } = control;
     const waysBack = [layers.showView(view), appearance.showView(view)];
     control.fly(placeLike(view.camera, control.camera));
@@ -203,7 +204,7 @@ export class Views {
     return { camera: view.camera.message(), layers: layers.toKeep(), ...appearance.toKeep() };
   }
 
-  /** `key` is the idempotency key, the same for all attempts at one view. */
+  /** `key` is the idempotency key, the same for all attempts to create one view. */
   async keep(
     called: { name: string; text: string },
     content: ViewContent,
@@ -215,13 +216,13 @@ export class Views {
       header: { "Idempotency-Key": key },
     });
     this.put(made);
-    this._back = null; // the state now has a name, so no return is necessary
+    this._back = null; // the current state is now a saved view, so users need no way back
     this.remember(made);
   }
 
   /**
-   * Changes the loaded version. If another user has changed it since, throws an ApiError with
-   * status 412 and updates the view.
+   * Changes the name and text of a view. If another user has changed it since this page loaded it,
+   * throws an ApiError with status 412 and updates the view.
    */
   async describe(view: View, called: { name: string; text: string }): Promise<void> {
     await this.newestAfter(view, async () =>
@@ -235,8 +236,8 @@ export class Views {
     );
   }
   /**
-   * Saves the current view under the existing name. Throws the same ApiError as describe() if
-   * another user has changed the saved view since.
+   * Saves the current view under the existing name. If another user has changed the saved view
+   * since this page loaded it, throws the same ApiError as describe().
    */
   async replace(view: View): Promise<void> {
     const changed = await this.putContent(view, this.content());
@@ -248,8 +249,8 @@ export class Views {
     notices.show("success", words.replaced(view.name), "", { label: words.undo, act: undo });
   }
   /**
-   * Deletes the loaded version. Throws the same ApiError as describe() if another user has changed
-   * it since.
+   * Deletes a view. If another user has changed it since this page loaded it, throws the same
+   * ApiError as describe().
    */
   async remove(view: View): Promise<void> {
     await this.newestAfter(view, () =>

@@ -117,7 +117,7 @@ export class StrataFilesField extends LitElement {
   get pending(): readonly File[] {
     return this._pending;
   }
-  /** Removes a file that was sent from the pending files. */
+  /** Removes a file from the pending files after it was sent. */
   sent(file: File): void {
     this._pending = this._pending.filter((each) => each !== file);
   }

@@ -1,6 +1,6 @@
-// <strata-marks-field>: the lines or points of a record in its form. It lists those on this model
-// and shows the number of those on other models. The event `draw` requests the drawing of new ones
-// on the model.
+// <strata-marks-field>: the lines or points of a record in its form. It lists the lines or points
+// on this model, and shows the number of lines or points on other models. The event `draw` starts
+// the drawing tool for new lines or points on this model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -283,8 +283,8 @@ export class StrataRecordChooser extends LitElement {
   };
 
   /**
-   * Handles a key. Keys without a use here are passed on. For example, Enter without a match
-   * applies the whole field.
+   * Handles a key. Other elements receive all keys that this element does not use. For example,
+   * Enter without a match applies the whole field.
    */
   private onKey(event: KeyboardEvent): void {
     const { found } = this;

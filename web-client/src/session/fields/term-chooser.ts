@@ -333,8 +333,8 @@ export class StrataTermChooser extends LitElement {
   }
 
   /**
-   * Keeps the focus in the field when the user presses on the tree. The on-screen keyboard of a
-   * phone then stays open.
+   * Keeps the focus in the field when the user presses on the tree, so the on-screen keyboard of a
+   * phone stays open.
    */
   private keepFocus(event: Event): void {
     event.preventDefault();
