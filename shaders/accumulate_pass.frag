@@ -1,5 +1,5 @@
 #version 450 core
-// Copies a frame. The blend function adds a share of it to a sum (render/view/accumulation).
+// Copies a frame. The blend function adds a share of the frame to a sum (render/view/accumulation).
 layout(binding = 0) uniform sampler2D picture;
 layout(location = 0) out vec4 color;
 

@@ -182,7 +182,7 @@ bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint runs) {
 }
 
 // Paints a row and returns the bits of the written texels, lowest first. If `page` is kNoPage, an
-// eraser has nothing to erase, but the texels still count as written.
+// eraser writes no texels, but their bits are still returned.
 uint paint_row(EditPart part, uint y, uint page, uint runs) {
   uint element = part.slot * 64u + y * 8u;
   ivec3 source = ivec3(element & (kPositionRow - 1u), (element >> kPositionRowBits) & (kPositionRow - 1u),

@@ -1,9 +1,9 @@
 #version 450 core
 #include "shared/mesh.h"
 #include "shared/museum_light.h"
-// The vertex stage of the mesh for g-buffers and for depth only. Both use it, so their depths are
-// bitwise equal. With LIT_VERTICES, the museum light of small triangles is computed at their
-// vertices instead of at each pixel.
+// The vertex stage of the mesh for g-buffers and for depth only. Both kinds of draws use it, so
+// their depths are bitwise equal. With LIT_VERTICES, the museum light of small triangles is
+// computed at their vertices instead of at each pixel.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
 layout(location = 2) in vec2 uv;

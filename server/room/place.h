@@ -14,7 +14,7 @@ struct PixelPlace {  // the surface at a pixel of the camera's window
 };
 // Either a pixel, or the surface point nearest to a point in world coordinates.
 using Place = std::variant<PixelPlace, glm::dvec3>;
-// How an outline changes the selection that the previous outlines made.
+// The effect of an outline on the selection that the previous outlines made.
 enum class Combination { add, subtract, intersect };
 struct Outline {
   // Selects the visible surface inside the path in the camera's window (even-odd rule).
@@ -22,8 +22,8 @@ struct Outline {
   std::vector<glm::dvec2> path;  // window pixels, origin top left; 3…4096 points
   bool through = false;          // also selects hidden surface
 
-  // Further outlines. Each one is in the window of its own camera, and they are combined in this
-  // order.
+  // Further outlines, which are combined in this order. Each outline is in the window of its own
+  // camera.
   struct Step {
     Combination combination = Combination::add;
     Camera camera;

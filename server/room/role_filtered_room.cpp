@@ -243,7 +243,7 @@ class FilteredParticipants final : public Participants {
   const Role role_;
 };
 
-// The surface and the surface images contain no layer data, so those of the room are used.
+// The surface and the surface images contain no layer data, so the room's objects are used.
 class RoleFilteredRoom final : public Room {
  public:
   RoleFilteredRoom(std::shared_ptr<Room> room, Role role)

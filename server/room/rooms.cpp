@@ -122,7 +122,7 @@ struct Rooms::Impl {
 
   Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref);
 
-  // After a suspension, another node may have newer edits until the room was compared with the
+  // After a suspension, the room may lack edits of another node until it was compared with the
   // journal.
   static Result<std::shared_ptr<OpenRoom>> current(std::shared_ptr<OpenRoom> room) {
     if (!room->is_current()) return tl::unexpected(kNoLease);
@@ -147,7 +147,7 @@ struct Rooms::Impl {
     return suspended;
   }
 
-  // Gives up a room whose edits are durable, so that another node can open its model at once.
+  // Releases a room whose edits are durable, so that another node can open its model immediately.
   void pass_on(const std::shared_ptr<OpenRoom>& room, const Error& why) {
     if (!is_suspended()) room->release();
     room->move_away(why);
@@ -161,8 +161,8 @@ struct Rooms::Impl {
     return moved_to(other && *other ? (*other)->url : std::string());
   }
 
-  // Closes rooms that were empty for a while. Gives the system the memory of participants who have
-  // left: each view takes about 15 MB, in small pieces if the CPU draws.
+  // Closes rooms that were empty for `close_after`. Returns the memory of participants who have
+  // left to the system: each view takes about 15 MB, in small pieces if the CPU draws.
   void sweep() {
     std::size_t departed = 0;  // since memory was last returned
     bool due = false;  // return memory in the next round, when the renderer has released the views
@@ -208,8 +208,8 @@ struct Rooms::Impl {
                        "because another model needs its memory");
   }
 
-  // Closes rooms that are not used by a request and have no edit in progress. Of such a room,
-  // `rooms` holds the only reference.
+  // Closes rooms that are not used by a request and have no edit in progress. `rooms` holds the
+  // only reference to such a room.
   bool close_rooms(const std::function<bool(const OpenRoom&)>& may_close, const char* why) {
     std::vector<std::shared_ptr<OpenRoom>> leaving;
     {
@@ -335,8 +335,8 @@ Result<void> Rooms::retire_key(TableId table_id, std::int64_t key) {
 }
 
 Result<void> Rooms::settle() {
-  // The error `gone` means that the model was deleted, and `moved` that another server has it. Then
-  // every edit has its answer.
+  // The error `gone` means that the model was deleted, and `moved` that another server has it. In
+  // both cases, no edit waits for an answer.
   for (const auto& room : impl_->open_ones())
     if (auto settled = room->settle(); !settled && settled.error().code != ErrorCode::gone &&
                                        settled.error().code != ErrorCode::moved)

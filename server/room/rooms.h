@@ -42,7 +42,7 @@ struct RoomOptions {
   // The limit of main memory for open models: geometry, surface maps and layers. 0: 60 % of the
   // memory of the machine or container.
   std::uint64_t memory_bytes = 0;
-  // The id of this server as a node of a site (store/nodes/nodes.h). Empty if it is alone.
+  // The id of this server as a node of a site (store/nodes/nodes.h). Empty if it is the only one.
   std::optional<Uuid> node{};
   // Edits that take longer are logged with the times of their stages. 0: no limit.
   std::chrono::milliseconds slow_after{1000};
@@ -63,27 +63,27 @@ class Rooms {
   // Calls Layers::records_changed in the open models.
   void records_changed(TableId table_id);
   // Refuses later edits with `conflict` if they would paint this key of the table. Edits that were
-  // accepted earlier are durable when the call returns. After an Error, this is uncertain, but the
-  // key is retired. Blocks.
+  // accepted earlier are durable when the call returns. After an Error, the key is retired, but
+  // edits may not be durable. Blocks.
   Result<void> retire_key(TableId table_id, std::int64_t key);
-  // Returns when every accepted edit is durable. After an Error, this is uncertain, and the call
-  // can be repeated. Blocks.
+  // Returns when every accepted edit is durable. After an Error, some edits may not be durable;
+  // repeat the call. Blocks.
   Result<void> settle();
   // Allows painting these keys, because they have records again.
   void admit_keys(TableId table_id, std::span<const std::int64_t> keys);
   // Call after the model was deleted. Notifies listeners and closes the room.
   void forget(ModelId model_id);
   // Returns the address of another node that has the model, and nothing if this server has it or
-  // may open it. Does not ask the database if the model is open, or if this server is alone. While
-  // this node drains, another node is proposed for a model that no node has.
+  // may open it. Does not query the database if the model is open, or if this is the only server.
+  // While this node drains, returns another node for a model that no node has.
   Result<std::optional<std::string>> elsewhere(const std::string& model_ref);
-  // The lease of this node is lost. The open rooms draw for their participants, but refuse edits,
-  // and no edit is acknowledged until `resume` is called. Their listeners are notified
+  // Call when this node has lost its lease. The open rooms draw for their participants, but refuse
+  // edits, and no edit is acknowledged until `resume` is called. Their listeners are notified
   // (Listener::database_reachable). `open` returns an `unavailable` error, also for an open model,
-  // so that new users come to a node that has a lease. Does not wait for the database.
+  // so that new users open it on a node with a lease. Does not wait for the database.
   void suspend();
-  // The node has a lease again. Each room is compared with the journal before it accepts edits, and
-  // is closed if another node has claimed its model (Listener::moved).
+  // Call when the node has a lease again. Each room is compared with the journal before it accepts
+  // edits, and is closed if another node has claimed its model (Listener::moved).
   void resume();
   std::size_t open_rooms() const;
   // The open models, with the epochs of their claims (store/nodes/nodes.h).

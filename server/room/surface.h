@@ -34,8 +34,8 @@ class Surface {
   virtual std::shared_ptr<const mesh::SearchTree> search_tree() = 0;
   virtual Result<std::shared_ptr<const mesh::SurfaceMap>> map(int resolution) = 0;
   // The next two functions paint maps and measurements (query/maps) for an ImportEdit with `over`.
-  // This one paints around the surface point nearest to each position. Returns an `invalid` error
-  // if a surface point is farther away than `tolerance` (model units).
+  // `point_splats` paints around the surface point nearest to each position. Returns an `invalid`
+  // error if a surface point is farther away than `tolerance` (model units).
   virtual Result<TileMap> point_splats(const Layer& layer, const std::vector<PlacedValue>& values,
                                        double radius, double tolerance) = 0;
   // Paints the surface that is first visible along a direction, without perspective. `value_at`

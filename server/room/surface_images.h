@@ -12,8 +12,8 @@
 
 namespace strata::room {
 
-// The surface images of an open model. Changes block on the database and notify the listeners.
-// Thread-safe.
+// The surface images of an open model. Functions that change an image wait for the database and
+// notify the listeners. Thread-safe.
 class SurfaceImages {
  public:
   virtual ~SurfaceImages() = default;

@@ -10,7 +10,7 @@
 
 namespace strata::sign_on {
 
-// What the claims of a person give in Strata.
+// The rights that a person gets in Strata from the claims of the provider.
 struct Rights {
   bool may_create = false;   // the person gets an account if they have none
   std::optional<Role> role;  // empty if the provider has no rules for roles

@@ -78,7 +78,7 @@ Result<Client::Endpoints> Client::load_endpoints_locked() const {
   url += "/.well-known/openid-configuration";
   const auto document = STRATA_TRY(object_in(fetch_({.url = url}), url));
   if (text_of(document, "issuer") != provider_.issuer)
-    return broken(url + " names another issuer than the configuration.");
+    return broken(url + " has an issuer that differs from the configuration.");
   Endpoints found;
   found.authorization = text_of(document, "authorization_endpoint");
   found.token = text_of(document, "token_endpoint");

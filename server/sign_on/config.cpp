@@ -83,7 +83,7 @@ class Object {
     }
     return found;
   }
-  // Returns the texts by the names of the members.
+  // Returns the members of an object by name. All values must be texts.
   Result<std::map<std::string, std::string>> map(const std::string& name) const {
     const json* object = find(name);
     if (!object || !object->is_object() || object->empty() || object->size() > kMaxRules)

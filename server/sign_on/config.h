@@ -23,7 +23,7 @@ struct GroupRules {
   std::string claim;
   std::map<std::string, std::string> groups;  // names of groups by value of the claim
 };
-// Who gets a new account.
+// Selects the people who get a new account.
 struct AccountRules {
   enum class Who { everybody, nobody, some };
   Who who = Who::nobody;

@@ -15,8 +15,8 @@ namespace strata::sign_on {
 
 enum class Algorithm { rs256, es256 };
 
-// The public keys of a provider (RFC 7517). Keys of other kinds, or for other purposes, are left
-// out: RSA keys of 2048 to 8192 bits and keys on the curve P-256 remain.
+// The public keys of a provider (RFC 7517) for signatures: RSA keys of 2048 to 8192 bits and keys
+// on the curve P-256. Other keys are ignored.
 class KeySet {
  public:
   static constexpr std::size_t kMaxKeys = 64;

@@ -43,7 +43,7 @@ struct StoreOptions {
   int connections = 8;  // size of the pool, which all parts except the journal writer use
   PgLimits limits = kRequestLimits;
   std::chrono::milliseconds slot_for{10'000};  // longest wait for a connection from the pool
-  FilesPlace files{};                          // where new large content goes
+  FilesPlace files{};                          // the place of new large content
 };
 
 struct StoreInfo {
@@ -56,8 +56,8 @@ struct StoreInfo {
 
 // All durable data. All calls block the calling thread, are thread-safe and take a connection from
 // the pool. If the database is unreachable, they try to reconnect, and then return an `unavailable`
-// error ("Database unavailable"). A failed constraint gives a `conflict` error, an unknown id gives
-// `not_found`, and an outdated `version` gives `stale`. A change stores the response for the caller
+// error ("Database unavailable"). The error is `conflict` for a failed constraint, `not_found` for
+// an unknown id, and `stale` for an outdated `version`. A change stores the response for the caller
 // in the same transaction (IdempotentResponse).
 class Store {
  public:

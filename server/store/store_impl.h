@@ -80,7 +80,7 @@ Result<void> lock_project(PgConnection& connection, ProjectId id);  // prevents 
 Result<void> join_groups(PgConnection& connection, PersonId person_id,
                          const std::vector<GroupId>& groups);
 
-Result<void> check_project_role(Role role);  // `invalid` if projects cannot give it
+Result<void> check_project_role(Role role);  // `invalid` if it is not a project role
 
 template <class T>
 Result<void> keep(PgConnection& connection, const IdempotentResponse<T>& answer,

@@ -60,13 +60,13 @@ class FlowControl {
   void on_change(const Box& box, std::int64_t sequence);
   void on_change_everywhere(std::int64_t sequence);
   void on_style();
-  // From now on, frames show the scene after this earlier edit, or without a value, the newest
-  // state. Returns whether this is a change.
+  // From now on, frames show the scene after this earlier edit, or the newest state if there is no
+  // value. Returns whether this is a change.
   bool on_past(std::optional<std::int64_t> sequence);
   // The client shows all frames up to this one. Unknown numbers are clamped.
   void on_ack(std::uint64_t frame);
   void set_window(int window) { window_ = window < 1 ? 1 : window; }
-  void on_quiet();  // no camera arrived for some time: the camera counts as at rest
+  void on_quiet();  // no camera arrived for some time: the camera is considered at rest
 
   // Returns the draw to start now. Returns nothing while a draw is in progress.
   std::optional<Draw> next();

@@ -105,7 +105,7 @@ void LinkPace::judge(Seconds wait, Clock::time_point at) {
   short_waits_ = wait > kShortWait ? 0 : short_waits_ + 1;
   if (!wide_ && delay() > kLongDelay && short_waits_ == kFirstTrial) wide_ = true;
   if (step_ == 0 || short_waits_ < trial_) return;
-  // The current step was good for this long, so its trial has succeeded.
+  // The waits at the current step stayed short, so its trial has succeeded.
   if (trying_) trial_ = kFirstTrial;
   trying_ = true;
   change_step(step_ - 1);

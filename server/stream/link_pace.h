@@ -19,7 +19,7 @@ struct MovingPicture {
 };
 
 // Estimates the capacity of one client's link and browser from the times at which frames were sent
-// and acknowledged. Two frames that were sent close together and acknowledged further apart give
+// and acknowledged. Two frames that were sent close together and acknowledged further apart show
 // the link's rate (a packet pair). The delay is the shortest recent time of a frame, without the
 // time for its bytes at that rate (as in TCP Vegas). A frame's wait is its time beyond the delay.
 // Waits longer than `kMaxWait` reduce the quality and size of frames. A reduction that hardly

@@ -38,8 +38,8 @@ struct EditTiles {
 
 // The texels of a tile that the edit wrote, and the bounding box of the bounding spheres of the
 // written parts. `texels` contains 128 rows with one bit per texel, lowest bit first. The numbers
-// in `high` increase with the coordinate, and those in `low` decrease. All of them are 0 if no
-// texel was written.
+// in `high` increase with the coordinate, and the numbers in `low` decrease. All numbers are 0 if
+// no texel was written.
 struct EditedTile {
   uint texels[512];
   uint low[3];

@@ -21,7 +21,7 @@ struct Options {
   int frames = 200, layers = 0, changes = 0;
 };
 
-// Returns the processor time of all threads, including those of a driver that draws on the CPU.
+// Returns the processor time of all threads, also of a driver that draws on the CPU.
 double processor_ms() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);

@@ -41,8 +41,8 @@ struct Measured {
   std::vector<float> distances{};  // distances of all sets
 };
 
-// Makes sets of points like those of real queries: points of records on the surface, points of
-// measurements near it, and cameras far from it.
+// Makes sets of points as in real queries: points of records on the surface, points of measurements
+// near it, and cameras far from it.
 std::vector<std::vector<glm::vec3>> point_sets(const mesh::Geometry& geometry, int count) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> any(0, 1);

@@ -3,8 +3,8 @@
 
 Writes OUT_DIR/NAME-radius-MODEL.svg (milliseconds over the tool's radius, one panel for each
 texture size), NAME-models.svg (all models at 70 and 200 px) and NAME-bytes.svg (bytes between CPU
-and GPU for each edit). NAME is that of the result. Prints the tables of results/edits.md and
-results/edits-h200.md as Markdown. Needs only Python.
+and GPU for each edit). NAME is the name of the result without `.json`. Prints the tables of
+results/edits.md and results/edits-h200.md as Markdown. Needs only Python.
 """
 import json
 import math

@@ -3,10 +3,10 @@
 
 Writes OUT_DIR/NAME-times.svg (from a camera and from a stroke to pixels, over the number of active
 viewers, one panel for each link), NAME-rates.svg (frames per second of a viewer, and frames per
-processor second of the server) and, if the peer was measured, NAME-peer.svg. NAME is that of the
-result. Prints the tables of results/streaming.md as Markdown. Values are medians of the runs of a
-case. Whiskers of times end at the 95th percentile, and whiskers of other values end at the lowest
-and the highest run. Needs only Python."""
+processor second of the server) and, if the peer was measured, NAME-peer.svg. NAME is the name of
+the result without `.json`. Prints the tables of results/streaming.md as Markdown. Values are
+medians of the runs of a case. Whiskers of times end at the 95th percentile, and whiskers of other
+values end at the lowest and the highest run. Needs only Python."""
 import json
 import statistics
 import sys

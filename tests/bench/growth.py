@@ -7,12 +7,12 @@
 Makes the models, layers and edits with SQL: copies of one imported model, whose layers share a
 tenth of the edits in one large model. The edits are spread over two years and several people. Each
 edit has two revisions, copies of a real stroke, which paint and remove the same texels in turn.
-With --merge, the edits are batches of strokes of 20 batches, and the server merges those of the
-large model before the measurement. The script also prints the size of the journal before and after
-that.
+With --merge, the edits are batches of strokes (20 for each stroke), and the server merges the
+strokes of the large model before the measurement. The script also prints the size of the journal
+before and after the merge.
 
 Measures the first request that opens the large model, a state a year ago, and the lists of the page
-and of the API. Each list is read several times, and its median counts. Exits with 1 if a goal is
+and of the API. Reads each list several times, and uses the median. Exits with 1 if a goal is
 missed. Needs Debian's Python with pytest, because it uses the helpers of the end-to-end tests.
 """
 import argparse

@@ -69,8 +69,8 @@ Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int h
 // Returns such a camera for a box in world coordinates.
 Camera look_at(glm::dvec3 low, glm::dvec3 high, glm::dvec3 from, int width, int height);
 
-// Lets other users enter the parent folders of a future data folder. PostgreSQL does not run as
-// root, so it needs this.
+// Lets other users enter the parent folders of a future data folder. PostgreSQL needs this access,
+// because it does not run as root.
 void let_others_through(const std::filesystem::path& folder);
 // Makes a folder in the system's temporary folder that other users may enter.
 std::filesystem::path make_temporary_folder();

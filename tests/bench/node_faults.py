@@ -10,7 +10,7 @@ kill       kill -9 of the node that owns the model
 drain      SIGTERM to this node
 hang       SIGSTOP of this node; SIGCONT after the painters have continued
 cut        no byte passes between this node and PostgreSQL; the held bytes arrive later
-postgres   kill -9 of PostgreSQL, which is started again at once
+postgres   kill -9 of PostgreSQL, which is started again immediately
 
 A painter waits for an answer for ANSWER_S, and then sends the same stroke to the next node.
 Painting continues when each painter has an acknowledgement of a stroke that it sent after the
@@ -18,8 +18,8 @@ fault. After each round the painters stop, and their acknowledgements are compar
 in the database:
 
 lost       acknowledged strokes that are not in the journal
-doubled    strokes in the journal that no painter sent, or that it has more than once
-late       strokes that the hanging or separated node acknowledged after its lease
+doubled    strokes in the journal that no painter sent, or that are there more than once
+late       strokes that the hanging or separated node acknowledged after the end of its lease
 
 Prints a Markdown table. Exits with 1 if a stroke was lost, doubled or late. Needs Debian's Python
 with pytest, because it uses the helpers of the end-to-end tests.
@@ -59,7 +59,7 @@ class Stroke:
 
 
 class Painter(threading.Thread):
-    """Paints until `stopping` is set. Then every stroke that it sent is acknowledged."""
+    """Paints until `stopping` is set. At the end, every stroke that it sent is acknowledged."""
 
     def __init__(self, site, model, first, seed):
         super().__init__(daemon=True)
@@ -140,8 +140,8 @@ class Load:
         wait_for(reached, what)
 
     def went_on(self, since, without=None):
-        """Waits until each painter has an acknowledgement from another node than `without` of a
-        stroke that it sent after `since`. Returns the longest time until then."""
+        """Waits until each painter has an acknowledgement, from a node other than `without`, of a
+        stroke that it sent after `since`. Returns the longest of these times."""
 
         def first(painter):
             for stroke in list(painter.strokes):
@@ -201,8 +201,8 @@ def drain(_, load, owner):
 
 
 def separated(load, owner, begin, end):
-    """Between `begin` and `end` the owner is without its lease. A painter then gets no
-    acknowledgement from it, except in the time for which the lease still lasts."""
+    """The owner cannot renew its lease between `begin` and `end`. After the end of the lease,
+    painters must get no acknowledgement from the owner."""
     since = time.monotonic()
     begin()
     went_on_s = load.went_on(since, owner)
@@ -224,7 +224,7 @@ def cut(_, load, owner):
 def postgres(site, load, _):
     since = time.monotonic()
     site.postgres.kill()
-    # Until now an answer about an earlier commit may have arrived.
+    # Before this time, a response about an earlier commit may have arrived.
     killed = time.monotonic()
     site.postgres.restart()
     restarted_s = time.monotonic() - since
@@ -246,14 +246,14 @@ class Journal:
         self.lost = self.doubled = 0  # in all rounds
 
     def check(self, strokes):
-        """Adds the strokes of a round. Returns how many were lost and doubled in it."""
+        """Adds the strokes of a round. Returns the numbers of lost and doubled strokes in it."""
         self.acknowledged += [stroke.sequence for stroke in strokes]
         found = self.site.postgres.sql(
             f"SELECT coalesce(string_agg(sequence::text, ' '), '') FROM edits WHERE model_id = {self.model['id']}"
         )
         journal = set(map(int, found.split()))
         known = set(self.acknowledged)
-        # two acknowledgements with one sequence: one of the strokes is not there
+        # if two acknowledgements have the same sequence, one of the strokes is lost
         lost = len(known - journal) + len(self.acknowledged) - len(known)
         doubled = len(journal - known)
         in_round = {"lost": lost - self.lost, "doubled": doubled - self.doubled}
@@ -312,7 +312,7 @@ def main():
         layer = {"name": "marks", "type": "u8", "resolution": 2048}
         site.ok("POST", f"/models/{model['id']}/layers", layer)
         journal = Journal(site, model)
-        # one round of each in turn, so a slow hour of the machine affects all
+        # one round of each fault in turn, so a slow hour of the machine affects all faults
         for number in range(asked.rounds):
             for name in chosen:
                 result = one_round(site, model, journal, name, f"{asked.seed} {number} {name}")

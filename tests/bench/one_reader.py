@@ -10,7 +10,7 @@ list       seconds for a condition of 1900 items over a filled layer of 4096²
 leave      seconds from closing the connections until the server has used no processor for half a
            second: after long conditions, after large pictures
 stop       seconds from SIGTERM to the end of the process, during long conditions and pictures
-empty      memory for statistics of an empty layer of 16384²: at most and afterward
+empty      memory for statistics of an empty layer of 16384²: the maximum, and afterward
 points     seconds until the server refuses 1 200 000 points
 
 Prints one line for each measurement. Needs only Python and the server.

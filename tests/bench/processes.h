@@ -11,7 +11,7 @@
 namespace strata::bench {
 
 // Measurements of a process from /proc, or 0 if the process does not exist.
-// Returns the user and system time of all threads, including those that have ended.
+// Returns the user and system time of all threads, including threads that have ended.
 double processor_seconds(pid_t pid);
 double family_seconds(pid_t pid);  // also includes all processes that it started
 double resident_mib(pid_t pid);

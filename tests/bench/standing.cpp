@@ -24,7 +24,7 @@ const std::array kKnown{
     Known{"statue_nefertiti", {"y", 0}},
     Known{"textured10m", {"y", 0}},
     Known{"thai", {"y", 0}},
-    Known{"vessel_jug", {"z", 0}},  // before the preset `vessel`, because the first match counts
+    Known{"vessel_jug", {"z", 0}},  // before the preset `vessel`, because the first match is used
     Known{"vessel", {"y", 0}},
 };
 
@@ -71,7 +71,7 @@ Camera fitted_camera(const mesh::Geometry& geometry, const Standing& standing, g
                slope = std::tan(field / 2) * (1 - 2 * kMargin);
   // In the axes of the view, a camera at (cx, cy, d) shows a vertex (x, y, z) if |x − cx| ≤ slope
   // (d − z), and the same for y. These are four planes in cx, cy and d. Only the farthest planes of
-  // all vertices count.
+  // all vertices are used.
   constexpr double kMin = std::numeric_limits<double>::lowest();
   double to_right = kMin, to_left = kMin, to_top = kMin, to_bottom = kMin, nearest = kMin,
          farthest = -kMin;

@@ -17,7 +17,7 @@ struct Standing {
 
 // Returns the orientation of a model. `up` is from the file or from a person. If it is empty, known
 // scans of the data folder have their known up axis (PLY, OBJ and STL do not store one), and other
-// models have z. The front is always that of the known scan. For `title` see mesh_title.
+// models have z. The front always comes from the known scan. For `title` see mesh_title.
 Standing standing_of(const std::string& title, const std::string& up);
 
 // Returns a camera that shows the oriented model from a direction in the model's own axes (right,

@@ -17,7 +17,7 @@ struct EditTrace {
 
   TraceId id;
   Clock::time_point arrived = Clock::now();
-  Clock::time_point started{};    // the end of the queue and of the look-up in the journal
+  Clock::time_point started{};    // after the queue and the search in the journal
   Clock::time_point computed{};   // only for edits that a worker computes
   Clock::time_point painted{};    // the texels are in the mirror
   Clock::time_point submitted{};  // to the journal

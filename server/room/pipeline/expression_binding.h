@@ -28,11 +28,11 @@ std::vector<std::string> shapes_read(const Expression& expression,
 std::vector<query::LayerView> layers_seen_by(const std::vector<query::LayerView>& layers,
                                              Role role);
 
-// Binds a formula over layers to the records of their keys. Reads from the database the present
-// records, or those at the model's edit `at`, with the columns that `seen_by` sees. Blocks. Returns
-// `invalid` for a layer without records, and for a missing column or one of another type. The error
-// has `field` and the position in the formula. Suggestions contain only layers in `candidates`, or
-// in `layers` if `candidates` is null. All readers of the error must be allowed to see these.
+// Binds a formula over layers to the records of their keys. Reads the current records, or the
+// records at the model's edit `at`, with the columns that `seen_by` sees. Blocks. Returns `invalid`
+// for a layer without records, and for a missing column or one of another type. The error has
+// `field` and the position in the formula. Suggestions contain only layers in `candidates`, or in
+// `layers` if `candidates` is null. All readers of the error must be allowed to see these.
 Result<query::BoundExpression> bind_expression(
     const Expression& expression, const std::vector<query::LayerView>& layers, store::Store& store,
     Role seen_by, std::optional<std::int64_t> at, const std::string& field,
@@ -42,7 +42,7 @@ Result<query::BoundExpression> bind_expression(
 // `layer`. The formula may read only data that every user of the layer can see, so the result
 // reveals no hidden data. `layers` are all layers of the model. The result contains the layers that
 // the formula may read. Also returns an `invalid` error at `field` for data that `author` can see
-// but not every user of the layer.
+// but some users of the layer cannot see.
 struct BoundForLayer {
   query::BoundExpression expression;
   std::vector<query::LayerView> layers;

@@ -14,7 +14,7 @@
 
 namespace strata::room {
 
-// The data for the search of the texels of an edit. All of it is constant while one edit is
+// The data with which the server finds the texels of an edit. It does not change while one edit is
 // computed.
 struct RegionContext {
   const mesh::SurfaceMap& map;                  // for the resolution of the edited layer
@@ -37,7 +37,7 @@ struct PlaceOnSurface {
 };
 Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& map,
                                   SurfaceLookup& surface, const std::string& field);
-// Combines the selected texels with those of another outline.
+// Combines the selected texels with the texels of another outline.
 void combine(TileMasks& selected, const TileMasks& other, Combination combination);
 // Returns the texels of an outline and its steps, including the gutter. Waits for the GPU, which
 // must have the map.
@@ -45,9 +45,9 @@ Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map,
                             const SurfaceLookup& surface, render::Renderer& renderer,
                             render::ModelHandle model);
 
-// Return the changes of a fill or a polygon. Block, so call them on worker threads. Return the
-// error `invalid` for an expression over missing layers, and for a position that is not on the
-// model. Also return errors of the GPU.
+// These functions return the changes of a fill or a polygon. They block, so call them on worker
+// threads. They return the error `invalid` for an expression over missing layers, and for a
+// position that is not on the model. They also return errors of the GPU.
 Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType type,
                                              const RegionContext& context);
 Result<std::vector<TileChange>> polygon_changes(const PolygonEdit& polygon, ValueType type,

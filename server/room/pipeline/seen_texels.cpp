@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kMargin_px = 1;  // rounding must not cut off texels at the border of the box
 
-// A swept square covers exactly a box. The side of the square is the shorter side of the box, and
-// its path is along the longer side.
+// Returns a stroke of a square brush that covers exactly a box. The square is as wide as the
+// shorter side of the box, and its path is parallel to the longer side.
 StrokeBatch box_stroke(const Camera& camera, const glm::dvec2& low, const glm::dvec2& high) {
   const glm::dvec2 window(camera.width, camera.height);
   const glm::dvec2 from = glm::clamp(low - kMargin_px, glm::dvec2(-kMargin_px), window);

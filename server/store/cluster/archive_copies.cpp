@@ -12,9 +12,9 @@ namespace {
 
 constexpr const char* kReady = ".ready";
 
-// Deletes a folder of the archive. Another name first, so that an interruption does not leave an
-// incomplete copy that looks complete.
-// Returns false if the folder still looks like a complete copy.
+// Deletes a folder of the archive. Renames it first, so that an interruption does not leave an
+// incomplete copy that looks complete. Returns false if the folder still looks like a complete
+// copy.
 bool delete_copy(const fs::path& folder) {
   std::error_code error;
   fs::path part = folder;
@@ -55,8 +55,8 @@ Result<ArchiveFolder::Copy> make_copy(const ArchiveFolder& archive, const Cluste
   const fs::path log = cluster.folder() / "archive.log";
   std::error_code error;
   fs::remove(log, error);
-  // The processes of an interrupted copy may still write to its folder for a moment, so each try
-  // has its own name.
+  // The processes of an interrupted copy may still write to its folder for a moment, so each
+  // attempt uses a new name.
   const fs::path part =
       archive.copies_folder() / (copy_name(std::chrono::system_clock::now()) + kUnfinished);
   auto copied = run_to_end({programs / "pg_basebackup", "--dbname=" + cluster.dsn("postgres"),
@@ -97,7 +97,7 @@ Result<bool> needs_copy(const ArchiveFolder& archive, const Cluster& cluster,
   auto row = STRATA_TRY(connection.query("SELECT pg_walfile_name(pg_current_wal_lsn())"));
   const auto current = parse_wal_name(row.text(0, 0));
   if (!current || current->timeline != copies.back().first.timeline) return true;
-  // In this order, because PostgreSQL archives a waiting segment at any time.
+  // Read the waiting segments first, because PostgreSQL may archive them at any time.
   std::set<WalSegment> there = waiting_segments(cluster);
   there.merge(archive.segments());
   return first_missing(there, copies.back().first, *current).has_value();

@@ -11,9 +11,9 @@ namespace strata::store {
 class Cluster;
 
 // Makes a base copy of the running cluster, and checks it with pg_verifybackup. The copy appears
-// only when it is complete. Ends with a `cancelled` error soon after `goes_on` returns false, which
-// is asked several times a second. Returns `storage_full` if the disk is full. The calling thread
-// must live until the end, because the kernel ends the programs together with it.
+// only when it is complete. Calls `goes_on` several times a second, and ends with a `cancelled`
+// error if it returns false. Returns `storage_full` if the disk is full. The calling thread must
+// live until the end, because the kernel ends the programs together with it.
 Result<ArchiveFolder::Copy> make_copy(const ArchiveFolder& archive, const Cluster& cluster,
                                       const std::function<bool()>& goes_on);
 

@@ -19,8 +19,8 @@ namespace {
 constexpr int kArchiveFormat = 1;
 constexpr const char* kIdFile = "archive.json";  // in the archive and in the folder of the cluster
 constexpr const char* kNewIdFile = "archive.json.new";
-// The time after which PostgreSQL archives a segment that is not full. A crash of the disk loses at
-// most the changes of this time.
+// The time after which PostgreSQL archives a segment that is not full. If the disk fails, only the
+// changes of this time can be lost.
 constexpr const char* kArchiveTimeout = "archive_timeout=60s";
 
 fs::path absolute_folder(const fs::path& folder) {

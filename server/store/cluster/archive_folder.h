@@ -22,10 +22,10 @@ namespace strata::store {
 //   wal/NAME.gz        a WAL segment; NAME.gz.part is being written
 class ArchiveFolder {
  public:
-  // For the server of the cluster in `cluster` (the folder `postgres` of the data folder). Creates
-  // the archive if the folder is empty, and makes `user` its owner, because PostgreSQL writes the
-  // archive. Returns a `conflict` error if the archive belongs to another cluster, contains other
-  // files, or has disappeared, and `invalid` if the archive and the data folder contain each other.
+  // Opens the archive for the server of `cluster` (the folder `postgres` of the data folder). If
+  // the folder is empty, creates an archive. `user` becomes its owner, because PostgreSQL writes
+  // it. Returns a `conflict` error if the archive belongs to another cluster, contains other files,
+  // or has disappeared, and `invalid` if the archive and the data folder contain each other.
   //
   // A restored cluster has the same system identifier as the original, but writes another WAL. So
   // the archive stores an id of the data folder, which a restore does not copy.

@@ -20,7 +20,7 @@ struct ArchiveRules {
   int copies = 4;  // number of copies to keep
 };
 
-// What PostgreSQL reports about the archive of its WAL.
+// The state that PostgreSQL reports for the archive of its WAL.
 struct ArchiverState {
   bool archiving = false;                                         // the server has an archive
   std::optional<std::chrono::system_clock::time_point> archived;  // the last archived segment

@@ -12,7 +12,7 @@
 
 namespace strata::store {
 
-// How to recover a moment from an archive.
+// A plan to recover the state at a moment from an archive.
 struct RestorePlan {
   ArchiveFolder::Copy copy;
   std::optional<std::chrono::system_clock::time_point> moment;  // empty: the last archived change

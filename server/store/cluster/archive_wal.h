@@ -31,8 +31,8 @@ std::optional<WalSegment> first_segment_of(std::string_view backup_label);
 // `first_needed`. Files of other timelines, timeline histories and unknown files are kept.
 bool wal_can_go(std::string_view file, const WalSegment& first_needed);
 
-// Returns the first segment from `first` until before `end` that is not in `segments`. Both must be
-// on the same timeline.
+// Returns the first segment that is not in `segments`, from `first` to the segment before `end`.
+// `first` and `end` must be on the same timeline.
 std::optional<WalSegment> first_missing(const std::set<WalSegment>& segments,
                                         const WalSegment& first, const WalSegment& end);
 

@@ -49,7 +49,7 @@ Result<std::string> hide_password(const std::string& dsn, const fs::path& file) 
   const std::unique_ptr<PQconninfoOption, void (*)(PQconninfoOption*)> options(
       PQconninfoParse(dsn.c_str(), &error), &PQconninfoFree);
   if (!options) {
-    const std::string why = error ? error : "It cannot be parsed.";
+    const std::string why = error ? error : "The connection string cannot be parsed.";
     PQfreemem(error);
     return fail(ErrorCode::malformed, "Invalid connection string", why, "--database");
   }
@@ -123,7 +123,7 @@ Result<std::vector<Relation>> relations(PgConnection& connection, const char* ki
   return list;
 }
 
-// Reads what describes the database as a whole.
+// Reads the time, the schema version and the PostgreSQL version.
 Result<BackupFacts> read_state(PgConnection& connection) {
   auto state = STRATA_TRY(connection.query(
       "SELECT to_char(now() AT TIME ZONE 'UTC', 'YYYY-MM-DD\"T\"HH24:MI:SS\"Z\"'), "

@@ -58,8 +58,8 @@ Result<void> restore_backup(const std::filesystem::path& folder, const BackupFac
 // no dump, so `bytes` and `sha256` are empty.
 Result<BackupFacts> read_facts(const std::string& dsn, Progress& progress);
 // Returns the first difference of a copy from the original, as a sentence that begins with a lower
-// case letter. Returns an empty text if no difference exists. The sequences of the copy may be
-// ahead.
+// case letter. Returns an empty text if no difference exists. The sequences of the copy may have
+// higher values.
 std::string difference(const BackupFacts& expected, const BackupFacts& found);
 
 }  // namespace strata::store

@@ -76,7 +76,7 @@ Result<fs::path> find_programs_for_data(int major) {
   if (!installed.empty() && installed.rbegin()->first > major)
     found.error().detail +=
         " PostgreSQL " + std::to_string(installed.rbegin()->first) +
-        " is installed: when both versions are, `strata upgrade-database` updates the data. "
+        " is installed. Install the old version, too, and run `strata upgrade-database`. "
         "Without the old version, restore a backup into a new folder with `strata restore`.";
   return found;
 }
@@ -214,8 +214,8 @@ struct Cluster::Impl {
     return write_access_rules();
   }
 
-  // Writes the access rules. The server connects by the socket, which is in a folder that only the
-  // database user can enter. Only analysts connect by TCP.
+  // Writes the access rules. The server connects through the socket, which is in a folder that only
+  // the database user can enter. Only analysts connect over TCP.
   Result<void> write_access_rules() {
     std::ofstream file(access_rules(), std::ios::trunc);
     file << "local all all trust\n"
@@ -235,7 +235,7 @@ struct Cluster::Impl {
   // Runs initdb in a folder with another name first, so that an interrupted initdb leaves nothing
   // that looks like a database.
   Result<void> initialise() {
-    STRATA_TRY(check_not_set_aside(folder));  // again, because only now the folder is locked
+    STRATA_TRY(check_not_set_aside(folder));  // check again, now that the folder is locked
     const fs::path fresh = folder / "pgdata.new";
     std::error_code error;
     fs::remove_all(fresh, error);
@@ -263,8 +263,8 @@ struct Cluster::Impl {
     return false;
   }
 
-  // Returns true if the running PostgreSQL was started by this process. A killed process may have
-  // left a PostgreSQL that has not ended yet.
+  // Returns true if this process started the running PostgreSQL server. A killed process may have
+  // left a PostgreSQL server that has not ended yet.
   bool owns_data() const {
     pid_t owner = 0;
     std::ifstream(data / "postmaster.pid") >> owner;
@@ -327,14 +327,14 @@ struct Cluster::Impl {
       if (Clock::now() >= deadline)
         return fail(ErrorCode::unavailable, "Database not started",
                     "PostgreSQL in " + folder.string() + " did not start: " + tail(log_file));
-      end_postmaster(data, 0s);  // of a killed pg_upgrade; the next tries wait for its end
+      end_postmaster(data, 0s);  // left by a killed pg_upgrade; later attempts wait for its end
       std::this_thread::sleep_for(100ms);
     }
   }
 
   // Stops PostgreSQL with a fast shutdown, which ends sessions and writes a checkpoint. If
-  // PostgreSQL does not end, stronger signals follow. In that case, the next start recovers the
-  // data from the log.
+  // PostgreSQL does not end, sends stronger signals. In that case, the next start recovers the data
+  // from the log.
   Result<void> stop() {
     for (const auto& [signal_number, patience] :
          {std::pair{SIGINT, 30s}, std::pair{SIGQUIT, 5s}, std::pair{SIGKILL, 5s}}) {

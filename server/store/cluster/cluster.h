@@ -12,7 +12,7 @@
 
 namespace strata::store {
 
-// An address where analysts connect by TCP, in addition to the socket. It is on the loopback
+// An address where analysts connect over TCP, in addition to the socket. It is on the loopback
 // interface of this machine. Only the role kReaderRole may connect, with its password
 // (scram-sha-256).
 struct SqlListen {
@@ -24,8 +24,8 @@ struct ClusterOptions {
   std::optional<SqlListen> sql{};
   std::filesystem::path archive{};      // PostgreSQL archives its WAL there; empty: no archive
   std::vector<std::string> settings{};  // more settings of PostgreSQL: `name=value`
-  // How long a start is repeated that fails immediately. Processes of a killed server may still use
-  // the data.
+  // The time during which a start that fails immediately is repeated. Processes of a killed server
+  // may still use the data.
   std::chrono::seconds patience{30};
 };
 
@@ -67,8 +67,8 @@ class Cluster {
   const std::optional<ArchiveFolder>& archive() const;  // of ClusterOptions::archive
   // Restarts the postmaster if it has died (tests kill it). Returns quickly if it is running.
   Result<void> ensure_running();
-  // Stops PostgreSQL. The folder stays locked until the destruction, so no other process opens the
-  // data.
+  // Stops PostgreSQL. The folder stays locked until this object is destroyed, so no other process
+  // opens the data.
   Result<void> stop();
   // Begins to watch the postmaster, and restarts it when it dies.
   void watch();

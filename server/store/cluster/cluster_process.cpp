@@ -123,7 +123,7 @@ bool end_postmaster(const fs::path& pgdata, std::chrono::seconds patience) {
   if (pid <= 1) return true;
   std::error_code error;
   const fs::path data = fs::canonical(pgdata, error);
-  // A postmaster works in its data folder. So a process that got the same number later differs.
+  // A later process with the same number does not have the data folder as its working directory.
   const fs::path place = "/proc/" + std::to_string(pid) + "/cwd";
   const auto ended = [&] {
     std::error_code gone;

@@ -26,7 +26,7 @@ struct DatabaseUser {
 Result<DatabaseUser> database_user();
 
 // Returns the folders of the installed programs by major version: N/bin in the folders that
-// STRATA_POSTGRESQL lists, separated by colons. Without this variable, in /usr/lib/postgresql.
+// STRATA_POSTGRESQL lists, separated by colons, or by default in /usr/lib/postgresql.
 std::map<int, std::filesystem::path> installed_programs();
 
 // Returns the installed programs of the expected version (0 means the newest). If 0 is expected and
@@ -40,9 +40,9 @@ int data_version(const std::filesystem::path& pgdata);
 std::vector<std::string> initdb_command(const std::filesystem::path& programs,
                                         const std::filesystem::path& pgdata);
 
-// Stops a postmaster that has the data open, although no server of Strata has them open. If
-// `strata upgrade-database` is killed, the postmaster that pg_upgrade has started continues. The
-// caller must have the lock of the folder. Returns true if no postmaster is left after `patience`.
+// Stops a postmaster that has the data open, although no server of Strata uses the data. If `strata
+// upgrade-database` is killed, the postmaster that pg_upgrade has started continues. The caller
+// must have the lock of the folder. Returns true if no postmaster is left after `patience`.
 bool end_postmaster(const std::filesystem::path& pgdata, std::chrono::seconds patience);
 
 // Makes `user` the owner of the folder, sets its mode to 0700, and verifies in a child process that

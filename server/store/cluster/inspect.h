@@ -14,8 +14,8 @@ struct DatabaseState {
   std::int64_t schema_version = 0;  // 0 if no migration was applied yet
   std::int64_t known_version = 0;   // version of the newest migration in the folder
   std::uint64_t bytes = 0;
-  // Programs with this migration, or with a later one, can use the database: now, and after this
-  // program has updated it. 0 if no migration was applied yet.
+  // Programs with this migration, or with a later one, can use the database in its current state,
+  // and after an update by this program. 0 if no migration was applied yet.
   std::int64_t readable_from = 0, readable_after_update = 0;
   std::string applied_by;  // version of Strata that last updated the database; may be empty
 };

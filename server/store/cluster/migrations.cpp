@@ -170,8 +170,8 @@ Result<Schema> migrate_locked(PgConnection& connection, const std::vector<Migrat
     }
     if (std::stoll(version) < newest_known)
       return different_migrations(schema, "The database has migration " + version +
-                                              ", which this program does not have although it has "
-                                              "later ones.");
+                                              ", which this program lacks, although it has later "
+                                              "migrations.");
     if (schema.readable_from() > newest_known) return newer_database(schema, version, newest_known);
     newer = version;
   }
@@ -251,7 +251,7 @@ std::int64_t Schema::readable_from() const {
   return first;
 }
 
-// to_jsonb, because databases of older programs do not have the columns.
+// Uses to_jsonb, because databases of older programs do not have the columns.
 Result<Schema> read_schema(PgConnection& connection) {
   auto rows = STRATA_TRY(connection.query(
       "SELECT version::bigint, coalesce((to_jsonb(m) ->> 'readable_from')::bigint, version::bigint), "

@@ -33,8 +33,8 @@ struct Schema {
   std::string applied_by;  // version of Strata that applied the newest one; may be empty
 
   std::int64_t version() const;  // number of the newest migration, or 0
-  // A program can use the database if its newest migration is this one or a later one: the smallest
-  // N for which every migration after N is readable from N or an earlier one.
+  // Returns the smallest N for which every migration after N is readable from N or an earlier one.
+  // A program can use the database if its newest migration is N or a later one.
   std::int64_t readable_from() const;
 };
 
@@ -42,7 +42,7 @@ struct Schema {
 // table does not exist.
 Result<Schema> read_schema(PgConnection& connection);
 
-// Applies the missing migrations, and returns the present schema. Each file is one transaction,
+// Applies the missing migrations, and returns the current schema. Each file is one transaction,
 // which inserts its version row first. An advisory lock allows any number of servers to start at
 // the same time. A server waits up to `wait` for a server that has the lock, and then returns
 // `unavailable`.
@@ -50,9 +50,9 @@ Result<Schema> read_schema(PgConnection& connection);
 // If the database has migrations that are newer than all of `known`, applies nothing. Returns an
 // error if one of them is not readable for a program with `known`. Also returns an error if the
 // database has another migration that is not in `known`, or if an applied file differs from
-// `known`. The file format and the table `schema_migrations` are those of dbmate, with columns for
-// `readable_from` and the version of Strata. dbmate has no checksums, so they are in a separate
-// table.
+// `known`. The file format and the table `schema_migrations` come from dbmate; the columns for
+// `readable_from` and the version of Strata are added. dbmate has no checksums, so they are in a
+// separate table.
 Result<Schema> migrate(PgConnection& connection, const std::vector<Migration>& known,
                        std::chrono::milliseconds wait = std::chrono::minutes(10));
 

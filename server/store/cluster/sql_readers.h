@@ -12,7 +12,7 @@ namespace strata::store {
 inline constexpr const char* kReaderRole = "strata_reader";
 
 // Creates or updates the role in the private cluster that `dsn` connects to. The role needs the
-// password, has at most ten connections, and can read present and future views. By default, it is
+// password, has at most ten connections, and can read current and future views. By default, it is
 // read-only, a statement may take 30 seconds, and a transaction may be idle for one minute. It
 // cannot use temporary tables, large objects or advisory locks, which a new database allows for all
 // roles. The password is in the file, which is created (mode 0600) if it does not exist.

@@ -81,7 +81,7 @@ std::uintmax_t size_of(const fs::path& folder) {
   return bytes;
 }
 
-// As another user, root included, the old cluster would change its owner or could not be read.
+// Another user, also root, would change the owner of the old cluster, or could not read it.
 Result<void> check_owner(const fs::path& pgdata, const DatabaseUser& user) {
   struct stat info {};
   if (stat(pgdata.c_str(), &info) != 0 || info.st_uid == user.uid) return {};
@@ -92,7 +92,7 @@ Result<void> check_owner(const fs::path& pgdata, const DatabaseUser& user) {
                   ". Run the command as this user, for example with `sudo -u`.");
 }
 
-// The new cluster is made in the parent folder of `postgres`, and renamed to it.
+// The new cluster is made on the disk of the data folder, and then renamed to `postgres`.
 Result<void> check_same_disk(const UpgradePlan& plan) {
   struct stat data {
   }, cluster{};
@@ -150,7 +150,7 @@ class Upgrade {
       STRATA_TRY(copy_running(source / "postgres"));
     }
     ClusterOptions options;
-    options.settings = {"autovacuum=off"};  // the old cluster must stay as it is
+    options.settings = {"autovacuum=off"};  // the old cluster must not change
     auto old = STRATA_TRY(Cluster::start(source, options));
     old_ = std::move(old);
     return plan_.method == Method::dump ? make_by_dump(old_->dsn()) : make_by_upgrade();
@@ -176,7 +176,7 @@ class Upgrade {
  private:
   fs::path new_folder() const { return plan_.work() / "postgres"; }
   fs::path new_data() const { return new_folder() / "pgdata"; }
-  // In the folder of the old cluster, because the new one is deleted after a failure.
+  // The log is in the folder of the old cluster, because the new one is deleted after a failure.
   fs::path log() const { return plan_.cluster() / "upgrade.log"; }
 
   Result<void> run(const std::vector<std::string>& command, const fs::path& folder = "/") {
@@ -184,13 +184,13 @@ class Upgrade {
         command, user_, log(), [this] { return !progress_.cancelled(); }, folder);
   }
 
-  // Removes what an interrupted run has left.
+  // Stops the PostgreSQL of an interrupted run, and removes its files.
   Result<void> clear() {
     std::error_code error;
     for (const char* left : {"postgres/pgdata", "copy/postgres/pgdata"})
       if (!end_postmaster(plan_.work() / left, kEndPatience))
         return fail(ErrorCode::conflict, "Database in use",
-                    "A PostgreSQL in " + (plan_.work() / left).string() + " does not end.");
+                    "A PostgreSQL server in " + (plan_.work() / left).string() + " does not stop.");
     fs::remove_all(plan_.work(), error);
     fs::remove(log(), error);
     return give_folder(new_folder(), user_);
@@ -275,7 +275,7 @@ class Upgrade {
     if (!done) keep_reports();
     if (done && !ended)
       return fail(ErrorCode::internal, "Database in use",
-                  "The PostgreSQL that pg_upgrade has started does not end.");
+                  "The PostgreSQL server that pg_upgrade has started does not stop.");
     return done;
   }
 
@@ -292,7 +292,7 @@ class Upgrade {
 
   Result<void> start_new() {
     ClusterOptions options;
-    options.settings = {"autovacuum=off"};  // `finish_new` does its work
+    options.settings = {"autovacuum=off"};  // `finish_new` runs ANALYZE
     auto cluster = STRATA_TRY(Cluster::start(plan_.work(), options));
     new_ = std::move(cluster);
     return {};

@@ -8,9 +8,9 @@
 #include "core/progress.h"
 #include "store/cluster/backup.h"
 
-// A private cluster is brought to a newer major version of PostgreSQL. The new cluster is made in
-// the folder `upgrading` of the data folder and compared with the old one. Then two renames put it
-// into place. Until then, and after every failure, the site is what it was before.
+// Upgrades a private cluster to a newer major version of PostgreSQL. The new cluster is made in the
+// folder `upgrading` of the data folder and compared with the old one. Then two renames replace the
+// old cluster by the new one. Before the renames, and after every failure, the site is unchanged.
 namespace strata::store {
 
 struct UpgradePlan {
@@ -43,13 +43,13 @@ struct UpgradePlan {
 Result<UpgradePlan> plan_upgrade(const std::filesystem::path& data_dir, bool dump);
 
 struct UpgradeReport {
-  BackupFacts facts;  // the content that the old and the new cluster have
+  BackupFacts facts;  // the content of the old cluster, and of the new one
   std::chrono::seconds took{0};
 };
 // Does everything except the renames, and deletes the new cluster. If a server is running, it keeps
 // running, and the rehearsal uses a copy of its cluster (pg_basebackup).
 Result<UpgradeReport> rehearse_upgrade(const UpgradePlan& plan, Progress& progress);
-// Also puts the new cluster into place. Returns `conflict` if a server is running.
+// Makes the new cluster and replaces the old one. Returns `conflict` if a server is running.
 Result<UpgradeReport> upgrade_cluster(const UpgradePlan& plan, Progress& progress);
 
 }  // namespace strata::store

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kMaxTextLength = 10'000;  // characters
 
-// The visibility of a thread is that of its layer, which may be in the Trash. The expression also
-// works for a comment that the same statement has just made.
+// A thread has the visibility of its layer, which may be in the Trash. The expression also works
+// for a comment that the same statement has just made.
 constexpr auto kCommentVisibility = sql(
     "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM all_layers WHERE id = c.layer_id), c.visibility) "
     "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "
@@ -54,7 +54,7 @@ Comment read_comment(const PgResult& rows, int i) {
   const auto resolved_by = row.optional_text();
   if (resolved && resolved_by) comment.resolved = {*resolved_by, *resolved};
   comment.version = row.integer();
-  // An unknown visibility counts as the most restricted one.
+  // Replaces an unknown visibility by the most restricted one.
   comment.visibility = parse_visibility(row.text()).value_or(Visibility::curators);
   return comment;
 }

@@ -78,7 +78,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.sequence = row.integer();
   layer.version = row.integer();
   layer.locked = row.boolean();
-  // An unknown visibility counts as the most restricted one.
+  // Replaces an unknown visibility by the most restricted one.
   layer.visibility = parse_visibility(row.text()).value_or(Visibility::curators);
   layer.review = row.boolean();
   layer.labels = row.json().get<Labels>();

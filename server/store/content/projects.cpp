@@ -15,7 +15,7 @@ Result<void> check(const Project& project) {
   return check_texts({{&project.slug, "slug"}, {&project.description, "description"}});
 }
 
-// Erases the rest of the project's models that users have already erased from the Trash.
+// Erases the remaining data of models that users have already erased from the Trash.
 Result<void> erase_models_of(PgConnection& connection, ProjectId project_id) {
   auto models = STRATA_TRY(connection.query(
       "SELECT id FROM all_models WHERE project_id = $1 AND erasing", Params().id(project_id)));

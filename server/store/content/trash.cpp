@@ -13,8 +13,8 @@ using Kind = TrashEntry::Kind;
 
 constexpr int kRowsAtOnce = 2000;
 
-// The content of the Trash of project $1 and of its models that are not in the Trash: layers and
-// models with one of the visibilities $2 if $3 is true (for curators), and records that were
+// The content of the Trash of project $1. If $3 is true (for curators): its models, and layers of
+// models that are not in the Trash, with one of the visibilities $2. Also the records that were
 // deleted in the last $4 days and not created again.
 constexpr auto kTrash = sql(
     "(SELECT 'layer' AS kind, l.id, l.name, l.model_id, m.name AS model_name, 0::bigint AS table_id, '' AS table_name, "

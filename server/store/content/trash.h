@@ -68,7 +68,7 @@ class Trash {
   Result<TrashEntry> entry(ProjectId project_id, TrashEntry::Kind kind, std::int64_t id,
                            TableId table_id, const Sight& sight);
 
-  // Move a layer or model to the Trash, in the name of the user in `answer`.
+  // These functions move a layer or model to the Trash, for the user in `answer`.
   Result<void> put_layer(LayerId id, const IdempotentResponse<>& answer);
   Result<void> put_model(ModelId id, const IdempotentResponse<>& answer);
   // Restores a layer or model, with its former slug if that slug is free. An open room does not
@@ -76,7 +76,7 @@ class Trash {
   Result<TrashRestored> restore(const TrashEntry& entry,
                                 const IdempotentResponse<TrashRestored>& answer);
   // Restores a record, with its key, as an entry in the journal of the table. Returns a `conflict`
-  // error if its values do not fit the present table, or if the record exists.
+  // error if its values are not valid in the current table, or if the record exists.
   Result<TableChange> restore_record(const TrashEntry& entry, const std::string& user,
                                      const IdempotentResponse<TableChange>& answer);
   // Erases a layer or model permanently. `erase_some` erases its content later.

@@ -20,9 +20,9 @@ struct StoredFile {
 };
 
 // Content by its SHA-256, in a folder or a bucket. The names are the same in both, so either can be
-// copied to the other: `ab/cd/` and the hash in hexadecimal digits. Thread-safe. A call ends after
-// a limited time. If the disk or the server does not respond, the error is `unavailable`, and if it
-// has no space, `storage_full`.
+// copied to the other: `ab/cd/` and the hash in hexadecimal digits. Thread-safe. Each call has a
+// time limit. If the disk or the server does not respond, the error is `unavailable`, and if it has
+// no space, `storage_full`.
 class FileStore {
  public:
   virtual ~FileStore() = default;
@@ -35,15 +35,15 @@ class FileStore {
   // if there is no such file. Does not check the hash.
   virtual Result<std::vector<std::uint8_t>> read(const Sha256& hash, std::uint64_t begin,
                                                  std::size_t size) = 0;
-  // Returns whether there was such a file. After that, it does not exist.
+  // Deletes the file if it exists. Returns whether it existed.
   virtual Result<bool> remove(const Sha256& hash) = 0;
   // Calls `visit` for all files, in any order, until it returns an error.
   virtual Result<void> list(const std::function<Result<void>(const StoredFile&)>& visit) = 0;
-  // Removes what uploads have left that ended more than `age` ago, such as those of a process that
-  // was killed.
+  // Removes the files of incomplete uploads that ended more than `age` ago, for example because a
+  // process was killed.
   virtual Result<void> remove_unfinished(std::chrono::seconds age) = 0;
-  // A small file that identifies the store. Empty if it does not exist. Without a mark, a folder
-  // takes and returns no content, because its disk may not be mounted.
+  // Returns the mark, a small file that identifies the store, or nothing if it does not exist. A
+  // folder without a mark stores and returns no content, because its disk may not be mounted.
   virtual Result<std::optional<std::string>> read_mark() = 0;
   virtual Result<void> write_mark(const std::string& text) = 0;
 };
@@ -53,7 +53,7 @@ inline constexpr const char* kFilesMark = "strata-files.json";
 // Checks the place, but not its content. A folder is created if its parent exists.
 Result<std::unique_ptr<FileStore>> open_file_store(const FilesPlace& place);
 
-// Returns `ab/cd/` and the hash, and the hash of such a name.
+// The first function returns `ab/cd/` and the hash, the second one the hash of such a name.
 std::string file_name_of(const Sha256& hash);
 std::optional<Sha256> hash_of_file_name(std::string_view name);
 

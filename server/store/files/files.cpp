@@ -50,7 +50,7 @@ Result<void> Files::open(std::unique_ptr<FileStore> files) {
     Uuid id;
     std::int64_t outside = 0;
   };
-  // The first server creates the row. Others then find its id.
+  // The first server creates the row. Other servers then read its id.
   const auto known = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<Known> {
     STRATA_TRY(connection.query(sql("INSERT INTO file_store (id, place, owner) VALUES ($1, $2, ",
                                     kDatabaseId, ") ON CONFLICT DO NOTHING"),
@@ -89,7 +89,7 @@ Result<void> Files::check_open() {
   return fail(ErrorCode::conflict, "Files not found",
               std::to_string(known.outside_files) +
                   " files of this site are outside the database, in " + known.place +
-                  ". Name the place with --files, or move the files into the database first with "
+                  ". Specify their place with --files, or first move them into the database with "
                   "`strata files move --to database`.",
               "--files");
 }
@@ -108,7 +108,7 @@ Result<void> Files::adopt() {
         STRATA_TRY(connection.query(sql("UPDATE file_store SET owner = ", kDatabaseId)));
     if (done.affected() > 0) return {};
     return fail(ErrorCode::not_found, "No files",
-                "This site has no files outside the database yet. Name their place with --files.");
+                "This site has no files outside the database yet. Use --files to specify a place.");
   });
 }
 
@@ -181,7 +181,7 @@ Result<void> Files::remove_marked(std::chrono::seconds rest, bool& more) {
 }
 
 // Deletes the file of a row that is marked, or the mark if there is no file. The row stays locked
-// until then, so no other server deletes a later file of this hash.
+// during the deletion, so no other server deletes a later file of this hash.
 Result<void> Files::finish(Bytes hash, std::chrono::seconds rest) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
     const auto row = STRATA_TRY(connection.query(
@@ -293,7 +293,7 @@ Result<void> Files::each_row(bool is_outside, Progress& progress, const char* wh
 Result<Files::Moved> Files::move(Direction direction, Progress& progress) {
   if (!is_open())
     return fail(ErrorCode::malformed, "No place for files",
-                "Name the folder or the bucket of the files with --files.", "--files");
+                "Specify the folder or the bucket of the files with --files.", "--files");
   const bool into = direction == Direction::into_database;
   Moved moved;
   STRATA_TRY(each_row(into, progress, "Moving", [&](const Row& row) -> Result<void> {
@@ -376,7 +376,7 @@ Result<Files::Checked> Files::check(const std::function<void(const FileProblem&)
                                     Progress& progress) {
   if (!is_open())
     return fail(ErrorCode::malformed, "No place for files",
-                "Name the folder or the bucket of the files with --files.", "--files");
+                "Specify the folder or the bucket of the files with --files.", "--files");
   Checked checked;
   progress.begin_stage(0, 0.95);
   STRATA_TRY(each_row(true, progress, "Checking", [&](const Row& row) -> Result<void> {

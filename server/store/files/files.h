@@ -16,7 +16,7 @@ class Blobs;
 class Pool;
 
 struct FilesFacts {
-  std::string place;               // where the files are, as last used; empty: never used
+  std::string place;               // the last place of the files; empty: none was used yet
   std::int64_t outside_files = 0;  // contents outside the database
   std::int64_t outside_bytes = 0;
   std::int64_t inside_files = 0;
@@ -57,9 +57,9 @@ class Files {
   bool is_open() const;
   // Returns a `conflict` error if content is outside the database, but no place is open.
   Result<void> check_open();
-  // Returns whether this database may delete files. A restored copy of the database may not.
+  // Returns whether this database may delete files. A restored copy must not delete files.
   Result<bool> owns_files();
-  // Lets this database delete files, and no other.
+  // Allows this database, and no other database, to delete files.
   Result<void> adopt();
 
   Result<FilesFacts> facts();
@@ -85,7 +85,7 @@ class Files {
     std::int64_t files = 0, bytes = 0;
   };
   // Reads all files and compares them with their hashes. Calls `found` for each problem.
-  // Superfluous files are those without a row that are older than a day.
+  // A file is superfluous if it has no row and is older than a day.
   Result<Checked> check(const std::function<void(const FileProblem&)>& found, Progress& progress);
 
  private:

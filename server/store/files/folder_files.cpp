@@ -37,7 +37,7 @@ class OpenFile {
   }
   explicit operator bool() const { return descriptor_ >= 0; }
   int descriptor() const { return descriptor_; }
-  // Returns false if the file system reports an error only now.
+  // Closes the file. Returns false if the file system reports an error.
   bool end() { return close(std::exchange(descriptor_, -1)) == 0; }
 
  private:
@@ -54,8 +54,8 @@ bool write_all(int descriptor, Bytes bytes) {
   return true;
 }
 
-// A name in a folder is durable when the folder is. Some network file systems sync no folders
-// (EINVAL).
+// A new name in a folder is durable after the folder was synced. Some network file systems cannot
+// sync folders (EINVAL).
 Result<void> sync_folder(const fs::path& folder) {
   const OpenFile open(folder, O_RDONLY | O_DIRECTORY);
   if (open && (fsync(open.descriptor()) == 0 || errno == EINVAL)) return {};
@@ -69,7 +69,7 @@ Result<void> make_folder(const fs::path& folder) {
   return failed_file(folder, "Cannot create", errno);
 }
 
-// Deletes an unfinished file unless it got its name.
+// Deletes an unfinished file unless it was renamed.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(fs::path file) : file_(std::move(file)) {}
@@ -94,7 +94,7 @@ Result<std::unique_ptr<FileStore>> FolderFiles::open(const fs::path& folder) {
   return std::unique_ptr<FileStore>(std::move(files));
 }
 
-// If the disk is no longer mounted, the mark is missing. A missing file is then not a lost one, and
+// If the disk is no longer mounted, the mark is missing. Then a missing file is not lost, and
 // nothing may be written below the mount point.
 Result<void> FolderFiles::check_folder() const {
   struct stat facts {};
@@ -124,7 +124,7 @@ Result<void> FolderFiles::put(const Content& content, const std::function<bool()
   STRATA_TRY(check_folder());
   STRATA_TRY(make_folder(file.parent_path().parent_path()));
   STRATA_TRY(make_folder(file.parent_path()));
-  // Another thread may have made them and not yet synced them.
+  // Another thread may have made these folders, and not yet synced them.
   STRATA_TRY(sync_folder(folder_));
   STRATA_TRY(sync_folder(file.parent_path().parent_path()));
   return write_file(file, [&](const std::function<Result<void>(Bytes)>& sink) {

@@ -7,7 +7,7 @@
 namespace strata::store {
 
 // Content in a folder, on a disk of this machine or of the network. A file is written to the folder
-// `unfinished` and synced, and gets its name after that.
+// `unfinished` and synced, and then renamed.
 class FolderFiles : public FileStore {
  public:
   static Result<std::unique_ptr<FileStore>> open(const std::filesystem::path& folder);

@@ -127,7 +127,7 @@ Result<S3Reply> S3Client::send_once(const S3Call& call, const std::function<bool
     curl_easy_setopt(handle.get(), CURLOPT_INFILESIZE_LARGE,
                      static_cast<curl_off_t>(call.body->bytes));
   }
-  // The server compares the body with this hash, so it refuses a body that was changed on its way.
+  // The server compares the body with this hash, so it refuses a body that has changed.
   Headers headers(
       curl_slist_append(nullptr, ("x-amz-content-sha256: " + to_hex(body_hash)).c_str()));
   if (!bucket_.session_token.empty())

@@ -14,13 +14,13 @@
 
 namespace strata::store {
 
-// Where a bucket is, and the rights to use it. The keys are secrets: no error and no log contains
-// them.
+// The address of a bucket, and the keys to access it. The keys are secrets: no error and no log
+// contains them.
 struct S3Bucket {
   std::string url;  // of the bucket, without a slash at the end
   std::string region;
   std::string access_key, secret_key, session_token;
-  std::string ca_file;  // certificates to trust instead of those of the system; may be empty
+  std::string ca_file;  // certificates to trust instead of the system's; may be empty
 };
 
 struct S3Call {
@@ -39,13 +39,13 @@ struct S3Reply {
 };
 
 // Sends requests to a bucket, signed by libcurl (AWS Signature Version 4). Repeats a request up to
-// three times after failures that may pass. A request ends when no byte was sent or received for 30
+// three times after temporary failures. A request ends when no byte was sent or received for 30
 // seconds. Thread-safe.
 class S3Client {
  public:
   explicit S3Client(S3Bucket bucket);
-  // Returns also replies that are errors, such as 404. Returns `unavailable` if the server cannot
-  // be reached, or answers with an error of its own.
+  // Also returns replies with an error status such as 404. Returns `unavailable` if the server
+  // cannot be reached, or replies with the status 429 or 5xx.
   Result<S3Reply> send(const S3Call& call, const std::function<bool()>& cancelled = {});
 
  private:

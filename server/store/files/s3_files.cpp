@@ -43,8 +43,8 @@ bool is_safe_endpoint(std::string_view url) {
   return https || host == "127.0.0.1" || host == "localhost" || host == "[::1]";
 }
 
-// Returns the text between the tags of the first element `name` at or after `at`, and moves `at`
-// behind it.
+// Returns the text between the tags of the first element `name` at or after `at`, and sets `at` to
+// the position after the element.
 std::optional<std::string_view> element(std::string_view xml, std::string_view name,
                                         std::size_t& at) {
   const std::string open = "<" + std::string(name) + ">", close = "</" + std::string(name) + ">";
@@ -65,7 +65,7 @@ std::string_view text_of_reply(const S3Reply& reply) {
   return {reinterpret_cast<const char*>(reply.body.data()), reply.body.size()};
 }
 
-// Returns the error for a refusal of the S3 server. Its texts may contain any characters.
+// Returns the error for a refusal of the S3 server, with only printable ASCII from its message.
 tl::unexpected<Error> refusal(const std::string& place, const S3Reply& reply) {
   const std::string_view xml = text_of_reply(reply);
   std::string why(element(xml, "Code"));
@@ -126,7 +126,7 @@ Result<S3Place> s3_place(const FilesPlace& place, const S3Environment& environme
         "Enter the address of the S3 server as https://HOST:PORT. Only a server on this "
         "machine can use http.",
         "--files-endpoint");
-  // Certificates of Amazon's names of buckets do not cover names with dots.
+  // The certificates of Amazon do not match the names of buckets with dots.
   std::string url = !endpoint.empty() ? endpoint + "/" + bucket
                     : bucket.find('.') == std::string::npos
                         ? "https://" + bucket + ".s3." + region + ".amazonaws.com"

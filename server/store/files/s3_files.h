@@ -24,7 +24,7 @@ Result<S3Place> s3_place(const FilesPlace& place, const S3Environment& environme
 
 // One page of the reply to ListObjectsV2.
 struct S3Page {
-  std::vector<StoredFile> files;  // those with names of contents
+  std::vector<StoredFile> files;  // only files whose names are hashes
   std::string last_key;           // of all names; empty for an empty page
   bool is_last = true;
 };

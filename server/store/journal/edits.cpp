@@ -12,7 +12,7 @@ constexpr auto kStateColumns =
 constexpr auto kEditColumns =
     sql("e.sequence, e.id, e.stroke, e.user_name, e.op, e.record, e.answer, ", kStateColumns);
 
-// The edits of model $1 with the ids $2. A batch of a merged edit has the response that it had.
+// The edits of model $1 with the ids $2. A batch of a merged edit keeps its response.
 constexpr auto kWithIds = sql(
     "SELECT ", kEditColumns,
     "WHERE e.model_id = $1 AND e.id = any($2) AND e.first_sequence IS NULL UNION ALL "
@@ -123,8 +123,8 @@ Result<std::vector<std::int64_t>> Journal::redoable(LayerId layer_id, const std:
 Result<std::int64_t> Journal::sequence_at(ModelId model_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // Clients get times in milliseconds. The state at the time of an edit must include the edit.
-    // OFFSET 0 makes the planner read the index by time. It does not know that an early time has a
-    // low sequence, and would search backward through all later edits.
+    // OFFSET 0 makes the planner read the index by time. Otherwise, the planner would search
+    // backward through all later edits: it does not know that an early time has a low sequence.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM (SELECT sequence FROM edits WHERE model_id = $1 "
         "AND time < date_trunc('milliseconds', $2::timestamptz) + interval '1 millisecond' OFFSET 0) e",

@@ -22,7 +22,7 @@ constexpr std::size_t kEditsAtOnce = 20'000;
 constexpr int kListsAtOnce = 1000;
 constexpr int kTilesAtOnce = 16;                   // packed in one transaction
 constexpr std::size_t kRevisionsUntilCount = 512;  // of a layer, until its tiles are counted again
-// A merge can wait. Painting must not wait for it.
+// Painting must not wait for a merge.
 constexpr PgLimits kMergeLimits{std::chrono::seconds(30), std::chrono::seconds(20),
                                 std::chrono::seconds(1)};
 
@@ -60,9 +60,9 @@ PgArray array_of(std::span<const std::int64_t> numbers) {
 
 // --- the transaction
 
-// Begins a transaction that no edit waits for longer than necessary. The commit need not be on disk
-// at once. The rows of the model and the layer are locked in the order of the journal writer, so
-// the two never wait for each other in a circle. If the server hangs, the database ends the
+// Begins a transaction that blocks edits only for a short time. The commit need not be on disk
+// immediately. The rows of the model and the layer are locked in the order of the journal writer,
+// so that the two cannot cause a deadlock. If the server hangs, the database ends the
 // transaction.
 void begin_fenced(ModelId model, std::int64_t epoch, LayerId layer, const std::string& type,
                   Statements& out) {
@@ -93,8 +93,8 @@ Result<void> not_merged(PgConnection& connection, ModelId model, std::int64_t ep
               "The edits changed while the server merged them. It tries again later.");
 }
 
-// Runs the statements and commits if `is_complete(results)`. Otherwise the transaction changes
-// nothing.
+// Runs the statements, and commits if `is_complete(results)` is true. Otherwise the transaction has
+// no effect.
 template <class IsComplete>
 Result<void> commit_if(PgConnection& connection, ModelId model, std::int64_t epoch,
                        const Statements& statements, IsComplete is_complete) {
@@ -126,7 +126,7 @@ bool has_same_brush(nlohmann::json a, nlohmann::json b) {
   return a == b;
 }
 
-// Returns the widths of the points of the batch, or nothing if they do not fit.
+// Returns the widths of the points of the batch, or nothing if they are not valid.
 std::optional<nlohmann::json> widths_of(const nlohmann::json& record) {
   const std::size_t points = record.at("path").size();
   const auto widths = record.find("widths");
@@ -348,8 +348,8 @@ struct Packed {
   std::vector<std::uint8_t> content;
 };
 
-// Makes a segment of the oldest revisions of a tile. Returns nothing if the tile must stay as it
-// is.
+// Makes a segment of the oldest revisions of a tile.
+// Returns nothing if the tile must not change.
 Result<std::optional<Packed>> pack_tile(PgConnection& connection, LayerId layer, ValueType type,
                                         TileAddress tile, std::int64_t through) {
   const auto of_tile = [&] {
@@ -383,7 +383,7 @@ Result<std::optional<Packed>> pack_tile(PgConnection& connection, LayerId layer,
   }
   auto content = encode_segment(segment);
   if (!content) return std::nullopt;
-  // The revisions are deleted only if the segment gives the same ones.
+  // The revisions are deleted only if the segment contains the same revisions.
   const auto again = decode_segment(tile, type, *content);
   if (!again || !(*again == segment)) return std::nullopt;
   return Packed{tile, segment.entries.front().sequence, segment.entries.back().sequence,
@@ -422,8 +422,8 @@ Result<bool> JournalMerger::may_merge(std::string_view version) {
         "SELECT EXISTS (SELECT 1 FROM nodes WHERE lease_until > clock_timestamp() AND version <> $1)",
         Params().text(version)));
     if (others.boolean(0, 0)) return false;
-    // Programs that start later read it. A node that has started already has joined the site when
-    // this server asks again.
+    // Programs that start later read this mark. Nodes that have already started have joined the
+    // site when this function is called again.
     auto marked =
         STRATA_TRY(connection.query("UPDATE schema_migrations SET readable_from = NULL "
                                     "WHERE version = '000047' AND readable_from IS NOT NULL"));
@@ -522,9 +522,9 @@ Result<std::optional<std::int64_t>> JournalMerger::merge_group(
   return std::optional(revisions.rows);
 }
 
-// Gives the edits that were not merged the list of their tiles, which undo needs when their
-// revisions are in segments. This needs no lock: an edit has its list before its revisions are
-// packed, and keeps it.
+// Stores the list of tiles of the edits that were not merged. Undo needs the list when their
+// revisions are in segments. Storing it needs no lock: an edit has its list before its revisions
+// are packed, and keeps it.
 Result<void> JournalMerger::list_tiles(const Claim& claim, const Window& window,
                                        std::int64_t through, const Continue& go_on) {
   for (std::size_t i = 0; i < window.edits.size() && window.edits[i].sequence <= through;) {
@@ -547,7 +547,7 @@ Result<void> JournalMerger::list_tiles(const Claim& claim, const Window& window,
   return {};
 }
 
-// The edits up to this one are not read again. Their revisions can be packed.
+// Marks the edits up to `through`. They are not read again, and their revisions can be packed.
 Result<void> JournalMerger::advance(const Claim& claim, std::int64_t through) {
   return journal_.pool_.write_within(kMergeLimits, [&](PgConnection& connection) -> Result<void> {
     auto done = STRATA_TRY(connection.query(

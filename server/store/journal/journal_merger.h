@@ -24,9 +24,9 @@ class PgConnection;
 // - It packs the revisions of each tile into segments (domain/layers/tile_segment.h).
 //
 // Each step is one short transaction that replaces rows. It compares the epoch of the model
-// (store/nodes/nodes.h), so a server that has lost the model changes nothing. The transactions are
-// not waited for until they are on disk: if one is lost, its rows are as before. Used by one thread
-// at a time.
+// (store/nodes/nodes.h), so a server that has lost the model changes nothing. The commits do not
+// wait for the disk: if a transaction is lost, its rows do not change. Used by one thread at a
+// time.
 class JournalMerger {
  public:
   static constexpr std::chrono::seconds kEndedAfter{60};
@@ -45,10 +45,10 @@ class JournalMerger {
   struct Done {
     std::int64_t edits = 0;      // edits that were merged into others
     std::int64_t revisions = 0;  // revisions that were merged or packed
-    bool more = false;           // more edits can be merged at once
+    bool more = false;           // more edits can be merged now
   };
-  // Merges strokes that ended before the time, and packs the tiles that they wrote. `epoch` is that
-  // of the claim of the model. Returns `moved` if another server has claimed it.
+  // Merges strokes that ended before the time, and packs the tiles that they wrote. `epoch` is the
+  // epoch of this server's claim. Returns `moved` if another server has claimed the model.
   Result<Done> merge(ModelId model, std::int64_t epoch,
                      std::chrono::system_clock::time_point ended_before, const Continue& go_on);
 
@@ -62,7 +62,7 @@ class JournalMerger {
     MergeRules rules;
   };
   Result<Window> read_window(ModelId model, std::chrono::system_clock::time_point ended_before);
-  // Returns the number of revisions that it replaced; nothing if the edits stay as they are.
+  // Returns the number of revisions that it replaced; nothing if the edits do not change.
   Result<std::optional<std::int64_t>> merge_group(const Claim& claim, LayerId layer,
                                                   const std::vector<std::int64_t>& sequences);
   Result<void> list_tiles(const Claim& claim, const Window& window, std::int64_t through,
@@ -74,7 +74,7 @@ class JournalMerger {
                                   const std::vector<TileAddress>& tiles);
 
   Journal& journal_;
-  // Revisions of each layer since its tiles were last counted. Absent: they were never counted.
+  // Revisions of each layer since its tiles were last counted. No entry: they were never counted.
   std::map<LayerId, std::size_t> since_packed_;
 };
 

@@ -42,28 +42,28 @@ struct JournalState {
 };
 
 // Reads the journal of edits. JournalWriter writes it, and JournalMerger makes it smaller. A merged
-// edit counts from the sequence of its last batch: a state at an earlier batch is the one before
-// the stroke. Part of Store, whose rules for threads and
-// errors apply.
+// edit has the sequence of its last batch. Therefore, a state at the sequence of an earlier batch
+// does not contain any part of the stroke.
+// Part of Store, whose rules for threads and errors apply.
 class Journal {
  public:
   explicit Journal(Pool& pool) : pool_(pool) {}
 
-  // Returns all tiles of a layer as they were after the edit `at_sequence`. Empty: as they are now.
+  // Returns all tiles of a layer after the edit `at_sequence`, or the current tiles if it is empty.
   Result<TileMirror::Snapshot> load_tiles(const Layer& layer,
                                           std::optional<std::int64_t> at_sequence = {});
   // Returns all tiles of a layer as they were after the edit `sequence` (0: before all edits).
-  // Reads only the tiles that edits between `sequence` and `near` wrote. The other tiles are those
-  // of `near`, which is a state in the journal.
+  // Reads only the tiles that edits between `sequence` and `near` wrote. The other tiles come from
+  // `near`, which is a state in the journal.
   Result<TileMirror::Snapshot> load_tiles_near(const Layer& layer, std::int64_t sequence,
                                                const TileMirror::Snapshot& near);
   // Returns the last edit of each layer up to a sequence of the model. Layers without an edit are
   // left out.
   Result<std::map<LayerId, std::int64_t>> layer_sequences(ModelId model_id, std::int64_t sequence);
-  // Passes the revisions of a tile, newest first, with the present state of their edits, until
-  // `on_revision` returns false. All of them are of one state of the database, because the merger
-  // may replace rows at any time (journal_merger.h). Calls `begin` first, and again if the reading
-  // starts again after a lost connection.
+  // Passes the revisions of a tile, newest first, with the current state of their edits, until
+  // `on_revision` returns false. Reads all revisions from one snapshot of the database, because the
+  // merger may replace rows at any time (journal_merger.h). Calls `begin` first, and again if the
+  // reading starts again after a lost connection.
   Result<void> tile_past(const Layer& layer, TileAddress tile, const std::function<void()>& begin,
                          const std::function<bool(PastRevision&)>& on_revision);
   Result<std::vector<WrittenTiles>> written_by(const Layer& layer,
@@ -81,12 +81,12 @@ class Journal {
   Result<std::vector<std::int64_t>> redoable(LayerId layer_id, const std::string& user,
                                              bool pending_only = false);
   // Returns the strokes and other edits of a layer that are in force and wait for review, oldest
-  // first (review.cpp). `after` selects only those that begin with a higher sequence.
+  // first (review.cpp). `after` selects only strokes and edits that begin with a higher sequence.
   Result<ReviewQueue> review_queue(LayerId layer_id, const std::optional<std::string>& user,
                                    int limit, int offset, std::int64_t after = 0);
   // Returns the edits that a decision affects: edits that wait for review and are in force, or, for
   // `reopen`, edits that were accepted or rejected. If the caller names one batch of a stroke, the
-  // result contains all batches of the stroke. A batch that was merged stands for its edit.
+  // result contains all batches of the stroke. A batch that was merged selects the merged edit.
   Result<UnderReview> under_review(LayerId layer_id, Decision decision, const Reviewees& which);
   // Counts the edits of a model over time (timeline.cpp).
   Result<Timeline> timeline(ModelId model_id, const TimelineQuery& query);

@@ -106,8 +106,8 @@ struct JournalWriter::Impl {
       waiting.done(result);
       bytes = waiting.bytes;
     }
-    // Destroy `waiting` before the entry counts as answered: after a drain, the caller may destroy
-    // the objects that `waiting` refers to.
+    // Destroy `waiting` before `answered` is incremented: after a drain, the caller may destroy the
+    // objects that `waiting` refers to.
     std::lock_guard lock(mutex);
     waiting_bytes -= bytes;
     ++answered;

@@ -19,9 +19,9 @@ class Store;
 // Entries are committed in the given order, and waiting entries are grouped into one transaction.
 // After a failed commit, the writer reconnects and tries again, in order, until `retry_for` has
 // passed since the first attempt began. An entry whose id is already in the journal with the same
-// sequence counts as saved, because an attempt may have committed before its response was lost.
+// sequence is considered saved, because an attempt may have committed before its response was lost.
 // After `retry_for`, every waiting entry gets the error, in order, and the writer continues with
-// later entries. A database that hangs counts as unreachable: an attempt ends if no byte was
+// later entries. A database that hangs is considered unreachable: an attempt ends if no byte was
 // transferred for `limits.answer`.
 class JournalWriter {
  public:
@@ -48,7 +48,7 @@ class JournalWriter {
 
   // Sets an earlier time for the objects that were made in a project since `since`: comments,
   // records, files, views, tours, kiosk links, and the activity about them. Edits have the times of
-  // their entries. Only the demo uses it, because its history is invented. Returns the present time
+  // their entries. Only the demo uses it, because its history is invented. Returns the current time
   // of the database, for the next `since`. Blocks.
   static Result<std::chrono::system_clock::time_point> date_back(
       Store& store, ProjectId project, std::chrono::system_clock::time_point since,

@@ -8,7 +8,7 @@
 namespace strata::store {
 namespace {
 
-constexpr std::chrono::seconds kLongestPause{60};  // within a stroke, in a cut list
+constexpr std::chrono::seconds kLongestPause{60};  // within a stroke, if the list is cut
 
 // The client of the author chooses the id of a stroke, so the same id from two users means two
 // strokes.
@@ -33,7 +33,7 @@ Extents extents_of(std::span<const PlannedEdit> edits) {
   return extents;
 }
 
-// Returns the last sequence before which no stroke begins that may continue.
+// Returns the highest sequence for which all strokes that begin up to it have ended.
 std::int64_t covered(std::span<const PlannedEdit> edits, const Extents& extents,
                      const MergeRules& rules) {
   const std::int64_t last = edits.back().sequence;
@@ -121,7 +121,7 @@ class Planner {
   }
 
   void end_all_before_named_state(std::int64_t sequence) {
-    // A state from `last_` on contains the previous edit, but not this one.
+    // A named state from `last_` up to `sequence` - 1 contains the previous edit, but not this one.
     const auto named = std::ranges::lower_bound(rules_.named_states, last_);
     if (named != rules_.named_states.end() && *named < sequence) end_all();
     last_ = sequence;

@@ -46,14 +46,14 @@ struct MergePlan {
 };
 
 // Plans which batches of the ended strokes of a model become one edit each. `edits` are the edits
-// of the model after those of the previous plan, by ascending sequence.
+// of the model after the previous plan, by ascending sequence.
 //
 // Merging moves the texels of earlier batches to the sequence of the last batch. So two rules limit
 // a group:
-// - Between its batches, no stroke or other edit of the model ends, and no named state is. So the
-//   model has the same texels at the end of every stroke and edit, and in named states.
+// - Between its batches, no stroke or other edit of the model ends, and there is no named state. So
+//   the model has the same texels at the end of every stroke and edit, and in named states.
 // - Between its batches, no other edit writes to tiles that the group has written before. So the
-//   order of the revisions of each tile stays the same, and undo gives the same texels.
+//   order of the revisions of each tile stays the same, and undo restores the same texels.
 MergePlan plan_merges(std::span<const PlannedEdit> edits, const MergeRules& rules);
 
 }  // namespace strata::store

@@ -47,7 +47,7 @@ Result<ReviewQueue> Journal::review_queue(LayerId layer_id, const std::optional<
 }
 
 // Returns, for each named edit, the edit that contains it: itself, or the merged edit of its
-// stroke. Strokes that are drawn at the same time overlap, so the batches decide.
+// stroke. Strokes that are drawn at the same time overlap, so the query searches the batches.
 constexpr const char* kNamed =
     "SELECT coalesce((SELECT e.sequence FROM edits e WHERE e.layer_id = $1 AND e.sequence > n.sequence "
     "AND e.sequence <= n.sequence + $3 AND e.first_sequence <= n.sequence AND EXISTS (SELECT 1 FROM edit_batches b "

@@ -16,7 +16,7 @@ using TileKeysByPlace = std::map<std::pair<LayerId, TileAddress>, std::vector<Ke
 // Appends the statements that replace the stored sums.
 void write_tile_sums(const TileKeysByPlace& tiles, std::deque<PgConnection::Statement>& out);
 
-// Appends the same statements for the sums of the entries. The last entry of each tile counts.
+// Appends the same statements for the sums of the entries. Uses only the last entry of each tile.
 // Marks the layers of entries without sums.
 void write_tile_sums(std::span<const JournalEntry* const> entries,
                      std::deque<PgConnection::Statement>& out);

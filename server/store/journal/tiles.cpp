@@ -16,7 +16,7 @@
 namespace strata::store {
 namespace {
 
-// What a row contains.
+// The kind of data in a row.
 enum class Part { difference = 0, key = 1, segment = 2 };
 
 // One tile as it was read: its last key tile or the last segment, if any, and the later
@@ -175,7 +175,7 @@ Result<void> add_row(TileLoader& loader, const PgResult& row) {
 Result<TileMirror::Snapshot> Journal::load_tiles(const Layer& layer,
                                                  std::optional<std::int64_t> at_sequence) {
   return pool_.read([&](PgConnection& connection) -> Result<TileMirror::Snapshot> {
-    // The sequence and the tiles are of one state. Otherwise, a stroke could be merged in between.
+    // Read the sequence and the tiles from one snapshot, because a stroke may be merged in between.
     auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
     auto last = STRATA_TRY(connection.query(
         "SELECT (SELECT coalesce(max(sequence), 0) FROM edits WHERE layer_id = l.id AND sequence <= $2) "

@@ -29,7 +29,7 @@ struct Timeline {
   };
   static constexpr int kMaxNamed = 3;
   std::int64_t edits = 0;  // number of edits in all intervals
-  // begin of the first and end of the last interval; nothing if there is no edit
+  // beginning of the first and end of the last interval; nothing if there is no edit
   std::optional<Time> from, to;
   std::vector<Interval> intervals;
 };

@@ -19,7 +19,7 @@ struct UndoSteps {
 };
 struct UndoQuery {
   std::vector<LayerId> layers;        // only edits of these layers
-  std::vector<LayerId> pending_only;  // layers of which only edits that wait for review count
+  std::vector<LayerId> pending_only;  // layers where only edits that wait for review are steps
   int limit = 1;                      // limit for each of the two lists
 };
 

@@ -9,8 +9,8 @@
 
 namespace strata::store {
 
-// Returns the error `moved` if the newest epoch of the model differs, with the address of its owner
-// if that has a lease. Returns nothing if the epoch is the newest, or if there is no such model.
+// Returns the error `moved` if the newest epoch of the model differs, and nothing if the epoch is
+// the newest or if there is no such model. If the owner has a lease, the error has its address.
 Result<std::optional<Error>> deposed_problem(PgConnection& connection, ModelId model,
                                              std::int64_t epoch);
 

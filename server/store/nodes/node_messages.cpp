@@ -15,8 +15,8 @@ using std::chrono::milliseconds;
 // The reader tries again every second, so it must not wait long for a database that hangs.
 constexpr PgLimits kReaderLimits{milliseconds(5000), milliseconds(5000), milliseconds(2000)};
 
-// After a crash, PostgreSQL can assign ids of transactions again that it assigned shortly before
-// and whose transactions it did not save. The reader also looks for messages of so many earlier
+// After a crash, PostgreSQL can assign transaction ids again that it assigned shortly before
+// the crash but did not save. The reader also looks for messages of this number of earlier
 // ids.
 constexpr std::int64_t kAssignedAgain = 1000;
 
@@ -32,7 +32,7 @@ std::optional<Value> named(const std::array<std::string_view, Count>& names,
   return static_cast<Value>(found - names.begin());
 }
 
-// Returns nothing for a message that a newer version has written and this one does not know.
+// Returns nothing for a message of a newer version that this version cannot read.
 std::optional<NodeMessage> read_message(const PgResult& rows, int i) {
   PgRow row(rows, i);
   NodeMessage message;
@@ -57,7 +57,7 @@ NodeMessages::NodeMessages(std::string dsn, const Uuid& self, Options options)
     : dsn_(std::move(dsn)), self_(self), options_(options) {}
 NodeMessages::~NodeMessages() = default;
 
-// Listens before it reads, so no message falls between the two.
+// Listens before it reads, so that it misses no message.
 Result<PgConnection*> NodeMessages::connected() {
   if (!connection_ || !connection_->alive()) {
     connection_.reset();
@@ -68,7 +68,7 @@ Result<PgConnection*> NodeMessages::connected() {
   return connection_.get();
 }
 
-// Starts at the present state. The messages that are already visible count as read.
+// Starts at the current state. Messages that are already visible are considered read.
 Result<NodeMessages::News> NodeMessages::begin(std::int64_t from,
                                                std::chrono::system_clock::time_point now) {
   const bool missed = position_.has_value();
@@ -82,8 +82,8 @@ Result<NodeMessages::News> NodeMessages::begin(std::int64_t from,
 
 Result<NodeMessages::News> NodeMessages::read() {
   PgConnection& connection = *STRATA_TRY(connected());
-  // A statement of its own, before the messages are read: each transaction that had ended by then
-  // is visible to the next statement.
+  // Run this statement before the messages are read: each transaction that has ended by then is
+  // visible to the next statement.
   auto state = STRATA_TRY(connection.query(
       "SELECT pg_snapshot_xmin(pg_current_snapshot())::text::bigint, clock_timestamp(), "
       "pg_snapshot_xmax(pg_current_snapshot())::text::bigint"));
@@ -95,8 +95,8 @@ Result<NodeMessages::News> NodeMessages::read() {
     ended_.push_back({std::chrono::steady_clock::now(), oldest_running});
   if (!position_) return begin(settled, now);
   if (position_->read.size() > options_.most_unsettled) {
-    // An old transaction is still running. Its messages are lost, and so are those of all others
-    // that are running now.
+    // An old transaction is still running. Skip its messages and the messages of all other running
+    // transactions.
     return begin(next, now);
   }
   // The ids decrease if an older state of the database replaced it.
@@ -124,7 +124,7 @@ Result<NodeMessages::News> NodeMessages::read() {
   }
   position_->time = now;
   if (news.more) return news;
-  // The ids of transactions that have ended need not be remembered.
+  // Forget the ids of messages whose transactions have ended.
   position_->from = std::max(position_->from, settled);
   std::erase_if(position_->read, [&](const auto& entry) { return entry.second < position_->from; });
   return news;
@@ -134,8 +134,8 @@ Result<bool> NodeMessages::wait(milliseconds limit) {
   return STRATA_TRY(connected())->wait_for_notification(limit);
 }
 
-// Restored from a backup, messages have ids of transactions of another database. These are deleted
-// by their age.
+// Messages from a restored backup have transaction ids of another database. They are deleted by
+// their age.
 Result<void> NodeMessages::prune() {
   const auto keep_from = std::chrono::steady_clock::now() - options_.keep;
   std::optional<std::int64_t> ended_before;

@@ -18,8 +18,8 @@ namespace strata::store {
 class PgConnection;
 
 // A change that another node, or a program that is not a node, has committed. Triggers write the
-// messages (db/migrations/000045_node_messages.sql). A message names the subject of the change and
-// contains nothing of it.
+// messages (db/migrations/000045_node_messages.sql). A message identifies the changed objects, but
+// does not contain their data.
 struct NodeMessage {
   enum class Kind { records, table, comment, view, snapshot, tool, access, kiosk };
   enum class Event { created, changed, deleted };
@@ -49,10 +49,10 @@ class NodeMessages {
   struct Options {
     // Messages are deleted when their transactions ended this long ago.
     std::chrono::seconds keep{600};
-    // After so long without a successful read, messages may be missing. Less than `keep`.
+    // After this time without a successful read, messages may be missing. Less than `keep`.
     std::chrono::seconds missed_after{300};
     std::size_t most_at_once = 1000;       // messages that `read` returns
-    std::size_t most_unsettled = 100'000;  // ids to remember; more count as missed
+    std::size_t most_unsettled = 100'000;  // ids to remember; with more ids, messages are missed
   };
   NodeMessages(std::string dsn, const Uuid& self, Options options);
   NodeMessages(std::string dsn, const Uuid& self) : NodeMessages(std::move(dsn), self, Options()) {}
@@ -62,11 +62,11 @@ class NodeMessages {
     std::vector<NodeMessage> messages;  // sorted by id
     // Messages may be missing, so everything must be read again.
     bool missed = false;
-    bool more = false;                           // read again at once
-    std::chrono::system_clock::time_point time;  // of the read, by the database
+    bool more = false;                           // read again immediately
+    std::chrono::system_clock::time_point time;  // of the read, by the clock of the database
   };
   // Returns the messages since the last call. The first call returns none, and later calls return
-  // those that were not visible then. The messages of `self` are left out.
+  // messages that were not visible before. The messages of `self` are left out.
   Result<News> read();
   // Returns true if a message may have arrived, and false after `limit`. Blocks.
   Result<bool> wait(std::chrono::milliseconds limit);
@@ -79,7 +79,7 @@ class NodeMessages {
     std::int64_t from = 0;
     // ids of the messages of this and later transactions, each with its transaction
     std::map<std::int64_t, std::int64_t> read;
-    std::chrono::system_clock::time_point time;  // of the last read, by the database
+    std::chrono::system_clock::time_point time;  // of the last read, by the clock of the database
   };
   Result<PgConnection*> connected();
   Result<News> begin(std::int64_t from, std::chrono::system_clock::time_point now);

@@ -11,7 +11,7 @@
 namespace strata::store {
 namespace {
 
-// A renewal that takes longer cannot help, because the node no longer relies on its lease then.
+// A longer renewal is useless, because the node no longer relies on its lease after this time.
 constexpr PgLimits kLeaseLimits{std::chrono::milliseconds(1500), std::chrono::milliseconds(1500),
                                 std::chrono::milliseconds(1000)};
 
@@ -52,7 +52,7 @@ Result<std::optional<Node>> first_node(const Result<PgResult>& rows) {
 // (db/migrations/000045_node_messages.sql).
 constexpr const char* kSessionPrefix = "strata-";
 
-// A null node is a server that is alone.
+// A null node is a server without other nodes.
 Params& optional_node(Params& params, const std::optional<Uuid>& node) {
   return params.optional_text(node ? std::optional(to_string(*node)) : std::nullopt);
 }

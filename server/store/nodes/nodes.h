@@ -18,14 +18,14 @@ class NodeMessages;
 class Params;
 class Pool;
 
-// A server process of a site that has several.
+// A server process of a site with several nodes.
 struct NewNode {
   Uuid id;
   std::string url;  // its address, as in check_node_url
   std::string version, gpu;
 };
 
-// What a node reports with each renewal.
+// The values that a node reports with each renewal.
 struct NodeLoad {
   int open_models = 0;
   int participants = 0;
@@ -34,12 +34,12 @@ struct NodeLoad {
 
 struct Node : NewNode {
   std::chrono::system_clock::time_point started, lease_until;
-  bool lives = false;  // its lease is not over, by the clock of the database
+  bool lives = false;  // its lease has not ended, by the clock of the database
   bool draining = false;
   NodeLoad load;
 };
 
-// The models that a node owns, sorted by id. The list is bounded, `total` is not.
+// The models that a node owns, sorted by id. The list is limited, but `total` is not.
 struct OwnedModels {
   struct Entry {
     ModelId id = 0;
@@ -67,7 +67,7 @@ std::string with_sessions_of(const Uuid& node, const std::string& dsn);
 // opened (JournalEntry::epoch), so a node that lost a model can never change it.
 //
 // A node has a lease of `kLease`, which it renews every second. The clock of the database measures
-// it. If the lease is over, other nodes may claim its models. No session locks are used: if the
+// it. If the lease has ended, other nodes may claim its models. No session locks are used: if the
 // database ends a session, its locks are free while their holder still relies on them.
 //
 // A server without other nodes has no row and no lease. Its claims have no owner. Part of Store,
@@ -84,10 +84,10 @@ class Nodes {
   // neither wait for a busy pool nor for a long statement.
   // Inserts the node, or renews its lease if the database has it already.
   Result<void> join(const NewNode& node);
-  // Returns `gone` if the lease is over or the node was removed. Then the node must suspend its
+  // Returns `gone` if the lease has ended or the node was removed. Then the node must suspend its
   // rooms and join again.
   Result<void> renew(const Uuid& node, const NodeLoad& load);
-  // Other nodes may then claim the models of the node at once, and the node may claim no model.
+  // Then other nodes may claim the models of the node immediately, and the node may claim no model.
   Result<void> begin_drain(const Uuid& node);
   Result<void> leave(const Uuid& node);  // removes the node; its models have no owner then
   Result<void> forget_ended();           // removes nodes whose lease ended `kForgetAfter` ago
@@ -98,12 +98,12 @@ class Nodes {
 
   // --- Models
   // Makes `self` the owner of a model, and returns the new epoch. The model must have no owner, or
-  // the owner must be `self`, be draining, or have a lease that is over. Otherwise returns `moved`,
-  // with the address of the owner. Returns `unavailable` if the lease of `self` is over or `self`
-  // is draining. A node that hangs can keep the row of the model locked, because PostgreSQL waits
-  // for the rest of its transaction. If its lease is over, this ends its sessions that write.
+  // the owner must be `self`, or be draining, or its lease must have ended. Otherwise returns
+  // `moved`, with the address of the owner. Returns `unavailable` if `self` has no lease or drains.
+  // A node that hangs can keep the row of the model locked, because PostgreSQL waits for the end
+  // of its transaction. If the lease of such an owner has ended, ends its sessions that write.
   Result<std::int64_t> claim(ModelId model, const std::optional<Uuid>& self);
-  // Returns a new epoch without an owner, even if a node has claimed the model. For code that
+  // Returns a new epoch without an owner, even if a node has claimed the model. Used by code that
   // writes the journal without a room: a room that is open on any server is closed when it next
   // uses the journal.
   Result<std::int64_t> begin_epoch(ModelId model);
@@ -126,7 +126,7 @@ class Nodes {
 
  private:
   Result<std::int64_t> try_claim(ModelId model, const std::optional<Uuid>& self);
-  // Ends the sessions of the owner that write, if its lease is over.
+  // Ends the sessions of the owner that write, if its lease has ended.
   Result<void> end_sessions_of_owner(ModelId model);
   // Runs a statement on the connection of the lease. Returns the number of affected rows.
   Result<std::int64_t> run(const char* sql, const Params& params);

@@ -23,7 +23,7 @@ struct Activity {
   // for an edit or an entry of a table: as in the journal; otherwise "created", "changed",
   // "deleted", …
   std::string op;
-  std::string name;  // present or last name of the object; empty for a comment
+  std::string name;  // current or last name of the object; empty for a comment
   // The objects, if they still exist.
   std::optional<ModelId> model;
   std::optional<LayerId> layer;

@@ -12,7 +12,7 @@ namespace {
 constexpr int kPurgedAtOnce = 2000;
 constexpr std::size_t kMaxTriedName = 1024;  // the database shortens it to 255 bytes
 
-// Planned for each call, because the best index depends on the filters.
+// This query is planned for each call, because the best index depends on the filters.
 constexpr const char* kRows =
     "SELECT a.id, a.time, a.actor_kind, a.actor, a.person_id, a.address, a.action, a.subject_kind, a.subject_id, "
     "a.subject, a.project_id, coalesce(p.slug::text, ''), a.count, a.details "
@@ -74,7 +74,7 @@ Result<void> Audit::failed_sign_in(std::string_view name, std::string_view way) 
 }
 
 Result<std::vector<AuditRow>> Audit::rows(const AuditQuery& query) {
-  // No row has such a text.
+  // No row contains text that PostgreSQL cannot store.
   for (const std::string* text : {&query.actor, &query.action, &query.subject_kind})
     if (!check_text(*text, {})) return std::vector<AuditRow>();
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<AuditRow>> {

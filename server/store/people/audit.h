@@ -32,7 +32,7 @@ constexpr std::array<std::string_view, 28> kAuditActions{"sign_in",         "sig
                                                          "kiosk_deleted",   "setting_changed",
                                                          "oidc_bound",      "audit_purged"};
 
-// A row of the audit log. Names are those at the time of the action.
+// A row of the audit log. The names are from the time of the action.
 struct AuditRow {
   std::int64_t id = 0;
   std::chrono::system_clock::time_point time;

@@ -67,7 +67,7 @@ class Kiosks {
   Result<void> revoke(KioskId id);       // no effect if it is already revoked
   Result<Kiosk> ask_reload(KioskId id);  // `conflict` if revoked or expired
   // Switches the link for phones on or off. A link that is switched on again has a new secret.
-  // Returns a `conflict` error as for ask_reload.
+  // Returns a `conflict` error if the link is revoked or expired.
   Result<Kiosk> allow_phones(KioskId id, bool allowed);
 
  private:

@@ -25,7 +25,7 @@ class Members {
   // user named in the activity of the project; if it is empty, the activity gets no entry.
   Result<Membership> put(ProjectId project_id, const std::string& user, Role role,
                          const std::string& by = {});
-  // Returns a `not_found` error if the user has no role of their own in the project.
+  // Removes the role that `put` gave. Returns a `not_found` error if there is no such role.
   Result<void> remove(ProjectId project_id, const std::string& user, const std::string& by = {});
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kUser = "user", kFormer = "former-";
 constexpr std::size_t kMaxUserName = 64, kMaxFullName = 200, kMaxIdentity = 255;
-constexpr int kMaxNames = 1000;  // names that a new account tries
+constexpr int kMaxNames = 1000;  // names to try for a new account
 
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -94,7 +94,7 @@ struct LockedGroup {
   bool wanted = false;
 };
 
-// Locks the groups that the claims name, and those that earlier claims gave.
+// Locks the groups that the claims name, and the groups that earlier claims gave.
 Result<std::vector<LockedGroup>> lock_groups(PgConnection& connection, std::int64_t sign_on_id,
                                              const std::vector<std::string>& names,
                                              std::vector<std::string>& unknown) {
@@ -178,8 +178,8 @@ Result<void> SignOns::begin(const std::string& state, const std::string& browser
                             const PendingSignIn& pending, std::chrono::seconds lifetime) {
   STRATA_TRY(check_texts({{&pending.return_to, "return_to"}}));
   return pool_.write([&](PgConnection& connection) -> Result<void> {
-    // If very many sign-ins wait, somebody may have begun them to disturb others. The oldest ones
-    // are then removed.
+    // If very many sign-ins wait, somebody may be attacking the server. Therefore, the oldest
+    // sign-ins are removed.
     STRATA_TRY(
         connection.query("DELETE FROM pending_sign_ins WHERE expires <= now() OR state IN "
                          "(SELECT state FROM pending_sign_ins ORDER BY expires DESC OFFSET $1)",

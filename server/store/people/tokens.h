@@ -23,7 +23,7 @@ class Tokens {
 
   // Makes a token for a user who can sign in. At the limit, a new session replaces the oldest
   // session, but a new token for scripts is a `conflict`. With `hash`, returns an `unauthenticated`
-  // error if it is not the hash of the present password. With `project`, a token for scripts is
+  // error if it is not the hash of the current password. With `project`, a token for scripts is
   // valid only in that project, as viewer, annotator or curator; another role is `invalid`. Returns
   // a `not_found` error if the user or the project does not exist.
   Result<NewToken> create(TokenKind kind, const std::string& user, Role role,

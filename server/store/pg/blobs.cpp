@@ -9,14 +9,14 @@
 namespace strata::store {
 namespace {
 
-// Read at once from the file store. A multiple of kChunkBytes.
+// The size of one read from the file store. A multiple of kChunkBytes.
 constexpr std::uint64_t kWindowBytes = 8 * kChunkBytes;
 constexpr std::size_t kSumBytes = Sha256{}.size();
 // A blob may move between the database and the file store while it is read.
 constexpr int kMaxMoves = 10;
 
 // The sweep may have deleted the file of a transaction that begins long after its upload. It
-// deletes none before a day has passed.
+// keeps each file for at least a day.
 constexpr std::chrono::hours kUploadLasts{12};
 bool is_reliable(const Content& content) {
   return content.uploaded && std::chrono::steady_clock::now() - *content.uploaded < kUploadLasts;
@@ -52,7 +52,7 @@ Result<void> Blobs::upload(std::span<Content> contents, const std::function<bool
     }));
     // Otherwise the content is in the database, or a file is being removed.
     if (reserved.affected() == 0) continue;
-    // Also if the file exists: it may be damaged or unfinished.
+    // Upload even if the file exists, because it may be damaged or unfinished.
     STRATA_TRY(files_->put(content, cancelled));
     content.uploaded = now;
   }
@@ -156,7 +156,7 @@ Result<bool> Blobs::stream_file(Bytes sha256, const Place& place, std::uint64_t&
   if (!files_)
     return fail(ErrorCode::unavailable, "Files unavailable",
                 "The file " + file_name_of(hash) +
-                    " is outside the database. Name the folder or bucket with --files.");
+                    " is outside the database. Specify the folder or bucket with --files.");
   while (at < end) {
     const std::uint64_t first = at / kChunkBytes * kChunkBytes;
     const std::uint64_t last =
@@ -232,7 +232,7 @@ Result<void> keep_blob(PgConnection& connection, const Content& content,
     if (held.rows() == 0) continue;
     const bool is_outside = held.boolean(0, 0), stays = held.boolean(0, 1);
     if (!is_outside || (stays && is_reliable(content))) return {};
-    // Nobody has checked that the file is there, or the sweep removes it.
+    // The file may be missing, or the sweep is removing it.
     auto taken_in = STRATA_TRY(connection.query(
         "UPDATE blobs SET is_outside = false, chunk_sums = NULL, unused = NULL, "
         "removing = coalesce(removing, clock_timestamp()) WHERE sha256 = $1 AND is_outside",

@@ -63,7 +63,7 @@ class Blobs {
 Result<void> keep_blob(PgConnection& connection, const Content& content,
                        const std::function<bool()>& cancelled);
 
-// Deletes the given blobs if they are no longer used. The sweep deletes those with files.
+// Deletes the given blobs if they are no longer used. The sweep deletes blobs with files.
 Result<void> drop_unused(PgConnection& connection,
                          const std::vector<std::vector<std::uint8_t>>& hashes);
 // Deletes all unused blobs in the database, except those that another transaction is about to use.
@@ -79,7 +79,7 @@ inline constexpr auto kIsUnused =
         "AND NOT EXISTS (SELECT 1 FROM attachments a WHERE a.sha256 = b.sha256) "
         "AND NOT EXISTS (SELECT 1 FROM tour_files f WHERE f.sha256 = b.sha256)");
 
-// Writes the chunks of a blob whose row exists and has none.
+// Writes the chunks of a blob that has a row but no chunks.
 Result<void> write_chunks(PgConnection& connection, const Content& content,
                           const std::function<bool()>& cancelled);
 

@@ -26,7 +26,7 @@ constexpr const char* kConnectionLost = "08006";
 constexpr std::chrono::milliseconds kConnectFor{5000};
 
 // PostgreSQL only warns about a canceled wait, and the COMMIT succeeds. Warnings are translated, so
-// the function that sends this one identifies it.
+// this warning is recognized by the function that sends it.
 void note_canceled_wait(void* canceled, const PGresult* notice) {
   const char* function = PQresultErrorField(notice, PG_DIAG_SOURCE_FUNCTION);
   if (function && std::string_view(function) == "SyncRepWaitForLSN")
@@ -113,8 +113,8 @@ Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimit
   PQsetNoticeReceiver(raw, note_canceled_wait, connection.wait_was_canceled_.get());
   connection.limits_ = {std::min(limits.answer, kConnectFor), {}, {}};
   // The last five settings end the session of a client whose machine or network has failed, and
-  // release its locks. Otherwise they would last until the network of PostgreSQL gives the
-  // connection up, which takes hours.
+  // release its locks. Otherwise they would last for hours, until the network of PostgreSQL closes
+  // the connection.
   STRATA_TRY(connection.script(
       "SET synchronous_commit = on; SET client_min_messages = warning; "
       "SET client_encoding = 'UTF8'; SET jit = off; "
@@ -306,8 +306,8 @@ Result<bool> PgConnection::wait_for_notification(std::chrono::milliseconds limit
   return true;
 }
 
-// A message in the WAL that no program reads. Only a transaction that writes WAL waits for
-// standbys.
+// Writes a message to the WAL that no program reads, because only a transaction that writes WAL
+// waits for standbys.
 Result<void> PgConnection::confirm_visible() {
   STRATA_TRY(query("SELECT pg_logical_emit_message(true, 'strata', '')"));
   return {};

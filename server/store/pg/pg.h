@@ -115,7 +115,7 @@ class PgResult {
   std::int64_t affected() const;
   bool null(int row, int column) const { return PQgetisnull(result_.get(), row, column) != 0; }
   std::int64_t integer(int row, int column) const;  // int2, int4, int8
-  // Returns an id. If T is an optional id, SQL null gives an empty one.
+  // Returns an id. If T is an optional id, it is empty for SQL null.
   template <class T>
   T id(int row, int column) const {
     if constexpr (requires { typename T::value_type; })
@@ -181,10 +181,10 @@ class PgConnection {
   // limits of the connection. Forgets all notifications that have arrived.
   Result<bool> wait_for_notification(std::chrono::milliseconds limit);
 
-  // Makes the current transaction (or one of its own) wait, when it commits, until the synchronous
-  // standbys have all changes that this session can read. Call it before you report changes that
-  // another session has committed: that commit may still wait for a standby, or its wait may have
-  // been canceled.
+  // Makes the current transaction, or a new one, wait at its commit until the synchronous standbys
+  // have all changes that this session can read. Call it before you report changes that another
+  // session has committed: that commit may still wait for a standby, or its wait may have been
+  // canceled.
   Result<void> confirm_visible();
 
   // Sends statements without waiting between them. Returns the first failure; the server skips the

@@ -14,7 +14,7 @@ class PgRow {
  public:
   PgRow(const PgResult& rows, int row) : rows_(rows), row_(row) {}
 
-  // Returns an id. If T is an optional id, SQL null gives an empty one.
+  // Returns an id. If T is an optional id, it is empty for SQL null.
   template <class T>
   T id() {
     return rows_.id<T>(row_, column_++);

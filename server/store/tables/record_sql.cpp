@@ -144,7 +144,7 @@ class Writer {
   }
 
   Sql column(const Expression& e) {
-    // Returns the SQL for a column of the current row. The column is named as in the database.
+    // Returns the SQL for a column of the current row. `name` is its name in the database.
     std::function<std::string(const std::string&)> reach = [](const std::string& name) {
       return "t." + name;
     };
@@ -175,8 +175,8 @@ class Writer {
                   e, mistake::kUnknownColumn, corrected(table, e, step));
   }
 
-  // Returns one path for each column with a similar slug or name: the whole path with the slug of
-  // that column at the step.
+  // Returns one path for each column with a similar slug or name. In the path, the slug of the
+  // column replaces the part at the step.
   static std::vector<std::string> corrected(const Table& table, const Expression& e,
                                             std::size_t step) {
     std::vector<std::string> names{"key"};

@@ -10,7 +10,7 @@
 namespace strata::store {
 
 // Return SQL for a formula over the columns of a table, which the statement must call `t`. The
-// formula may use the visible columns of the table, and those of the tables that its terms refer to
+// formula may use the visible columns of the table, and of the tables that its terms refer to
 // (query::Names::columns). External values are parameters, which are appended to `params`; columns
 // are named by id. Return an `invalid` error at `field`, with the position of the character, for a
 // column that does not exist or has another kind. A text that is not a date, choice or number where

@@ -160,7 +160,7 @@ Result<TableChange> write_all(PgConnection& connection, TableId table_id,
 }
 
 // Returns the rows after a sequence, and sets `open` to that state. Returns nothing if it is the
-// present state, and an error for a sequence in the future.
+// current state, and an error for a sequence in the future.
 Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection, OpenTable& open,
                                                         std::optional<std::int64_t> at) {
   if (at && *at > open.table.sequence)

@@ -52,18 +52,18 @@ class Records {
 
   Result<RecordPage> page(TableId table_id, Role seen_by, const RecordQuery& query);
   // Returns the value of a number or condition over columns for each record where the value is
-  // known. Reads the state after sequence `at` of the table, or the present state. Returns an
-  // `invalid` error at `field` for an expression that does not fit the columns.
+  // known. Reads the state after sequence `at` of the table, or the current state. Returns an
+  // `invalid` error at `field` for an expression that is not valid for the columns.
   Result<std::vector<KeyNumber>> numbers(TableId table_id, Role seen_by,
                                          const Expression& expression,
                                          std::optional<std::int64_t> at, const std::string& field);
-  // Returns the present value of a column for each record that has a value, as canonical text. The
+  // Returns the current value of a column for each record that has a value, as canonical text. The
   // text of a term is its key. Returns an `invalid` error at `field` for a column that does not
   // exist or has lists as values.
   Result<std::vector<KeyText>> texts(TableId table_id, Role seen_by, const std::string& column,
                                      const std::string& field);
   // Returns the lines and points that records of a table have on a model, by key. Reads the state
-  // after sequence `at` of the table, or the present state.
+  // after sequence `at` of the table, or the current state.
   Result<std::vector<KeyFeature>> features(TableId table_id, Role seen_by, ModelId model_id,
                                            std::optional<std::int64_t> at = {});
   // Writes all records or none. If the change has problems, nothing was written.

@@ -45,7 +45,7 @@ struct RowError {
 
 // The result of a change to a table.
 struct TableChange {
-  Table table;                // the table in its present state
+  Table table;                // the current state of the table
   std::int64_t sequence = 0;  // sequence of the entry in its journal; 0 if nothing changed
   bool columns_changed = false;
   std::vector<std::int64_t> created, changed, deleted;  // keys, ascending

@@ -187,8 +187,8 @@ std::string place_of_row(const std::vector<SortKey>& keys) {
   return "to_jsonb(ARRAY[" + sql + "])";
 }
 
-// Returns the condition that a row follows a position, by one key after the other. Rows without a
-// value follow all rows with a value.
+// Returns the condition that a row follows a position. Compares one key after the other. Rows
+// without a value follow all rows with a value.
 Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohmann::json& place,
                                   Params& params) {
   std::string sql, equal_so_far = "true";

@@ -29,8 +29,8 @@ struct RecordOrder {
   std::optional<std::vector<std::int64_t>> keys{};
 };
 
-// Returns the PostgreSQL collation for a language ("de-at"): that of the language, of its base
-// language, or of all languages. Returns an empty text if PostgreSQL was built without ICU.
+// Returns the PostgreSQL collation for a language ("de-at"): the collation of the language, of its
+// base language, or of all languages. Returns an empty text if PostgreSQL was built without ICU.
 Result<std::string> collation_of(PgConnection& connection, const std::string& language);
 // Returns the keys of the records of a table in reading order: in the order of the tree for a term
 // list, otherwise by title.
@@ -68,8 +68,8 @@ Result<RowsPage> load_page(PgConnection& connection, TableId table_id,
                            const std::vector<Column>& columns,
                            const std::optional<std::vector<Record>>& past, const std::string& where,
                            Params params, std::span<const RecordOrder> order, const RowsPart& part);
-// Returns the values of an expression (record_sql) by key, for the records where they are known. A
-// condition gives 1 or 0.
+// Returns the values of an expression (record_sql) by key, for the records where they are known.
+// The value of a condition is 1 or 0.
 Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, TableId table_id,
                                             const std::vector<Column>& columns,
                                             const std::optional<std::vector<Record>>& past,

@@ -205,8 +205,8 @@ class Writer {
     return {};
   }
 
-  // The caller checks new values. Past values fit the columns of their time, so they are checked
-  // again against the present columns.
+  // The caller checks new values. Past values were valid for the columns of their time, so they are
+  // checked again for the current columns.
   void check_record(const Record& record) {
     const Cells& after = edit_.records.at(record.key);
     for (const Column& column : open_.table.columns) {
@@ -519,7 +519,7 @@ Result<OpenTable> read_table(PgConnection& connection, TableId id, Role seen_by)
     column.target = cells.id<std::optional<TableId>>();
     set_properties(column, cells.json());
     column.hidden = cells.boolean();
-    // An unknown visibility counts as the most restricted one.
+    // Replaces an unknown visibility by the most restricted one.
     column.visibility = parse_visibility(cells.text()).value_or(Visibility::curators);
     open.all.push_back(std::move(column));
   }

@@ -17,7 +17,7 @@ struct OpenTable {
   Table table;              // `columns` has only visible columns
   std::vector<Column> all;  // also hidden columns, by id
   std::int64_t next_key = 1;
-  Role seen_by = Role::owner;  // `table.columns` are those that this role sees
+  Role seen_by = Role::owner;  // this role sees `table.columns`
 };
 // Read a table. Return a `not_found` error if it does not exist. After lock_table, no other
 // transaction can change a table of the project until the transaction ends, so keys that other
@@ -38,7 +38,7 @@ struct TableEdit {
   nlohmann::json record;
   std::map<std::int64_t, Cells> records;
   std::map<ColumnId, Cells> columns;
-  // for undo and redo: past values must fit the present columns
+  // for undo and redo: past values must be valid for the current columns
   bool checks_values = false;
 };
 // Applies the edit. Returns a `conflict` or `invalid` error for a change after which a required

@@ -19,7 +19,7 @@ Result<Table> table_of(PgConnection& connection, TableId id, Role seen_by = Role
 }
 
 // Returns a visible column. Returns an error if the table has no such column, and a `stale` error
-// for a version other than that of the table.
+// for a version that differs from the version of the table.
 Result<const Column*> shown_column(const OpenTable& open, ColumnId column_id,
                                    std::optional<std::int64_t> version) {
   if (version && *version != open.table.version) return stale("table");

@@ -56,8 +56,8 @@ class Tables {
       const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
       const std::string& op, const IdempotentResponse<std::vector<TableChange>>& answer = {});
   // Imports all terms or none into a term list, as one entry of its journal. Returns a `conflict`
-  // error if the table is not a term list. A term whose URI or code exists changes that record;
-  // other terms are new. Properties that the imported text does not contain stay unchanged.
+  // error if the table is not a term list. A term whose URI or code exists changes the existing
+  // record; other terms are new. Properties that the imported text does not contain stay unchanged.
   // Problems name the term by its index.
   Result<TableChange> import_terms(TableId table_id, const TermList& list, bool dry_run,
                                    const std::string& user,
@@ -87,7 +87,7 @@ class Tables {
   // sequences.
   Result<TableHistory> history(TableId table_id, Role seen_by, std::optional<std::int64_t> key,
                                int limit, int offset, std::optional<std::int64_t> before = {});
-  // Returns the change of an entry of the journal, with the present state of the table and of the
+  // Returns the change of an entry of the journal, with the current state of the table and of the
   // records. If it changed the columns, or more than `most_records` records, `records` is empty.
   // Returns `not_found` if the table or the entry does not exist.
   Result<TableChange> change_of(TableId table_id, std::int64_t sequence, std::size_t most_records);

@@ -297,7 +297,7 @@ Result<TableChange> Tables::import_terms(TableId table_id, const TermList& list,
 }
 
 Result<std::optional<Palette>> term_palette_of(PgConnection& connection, TableId table_id) {
-  // Only columns that are visible to all roles, because all users who see the layer see its
+  // Reads only columns that are visible to all roles, because all users who see the layer see its
   // palette.
   auto open = STRATA_TRY(read_table(connection, table_id, least_role(Visibility::everyone)));
   const auto columns = term_columns(open.table);

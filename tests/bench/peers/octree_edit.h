@@ -35,7 +35,7 @@ struct OctreeDab {
 };
 
 // The published method: casts one ray through the center of each pixel under the tool, on one
-// thread, and paints the first leaf that each ray meets. The traversal is that of Revelles et al.
+// thread, and paints the first leaf that each ray meets. The traversal follows Revelles et al.
 // 2000. Returns the number of rays that met a leaf.
 std::size_t paint_by_rays(const Octree& tree, const OctreeDab& dab, OctreeLayer& layer);
 

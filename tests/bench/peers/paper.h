@@ -11,9 +11,9 @@
 namespace strata::bench {
 
 // The "small bias" of the paper, in window depth; the paper gives no number. With a camera whose
-// near and far planes are as close to the model as those of `look_at`, this is 1.6 % of the model's
+// near and far planes are as close to the model as in `look_at`, this is 1.6 % of the model's
 // radius. A bias of 2e-4 would reject parts of every surface with a tilt of more than 13 degrees,
-// because the depth varies by more than that within a pixel. The edit would be speckled, and
+// because the depth varies by more than this bias within a pixel. The edit would be speckled, and
 // rounding at its many thresholds would decide 3 to 11 of 100 000 texels.
 constexpr double kPaperDepthBias = 5e-3;
 

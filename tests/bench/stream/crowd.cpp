@@ -85,8 +85,8 @@ void Crowd::open(std::vector<std::pair<LiveClient*, Camera>> clients) {
   std::exit(1);
 }
 
-// Runs until no message has arrived for `quiet_s`. The bytes of pings do not count, because
-// hundreds of connections always exchange some.
+// Runs until no message has arrived for `quiet_s`. Ignores the bytes of pings, because hundreds of
+// connections always exchange some.
 void Crowd::settle(double quiet_s) {
   const double limit_ms = now_ms() + 1e3 * kMaxSettling_s;
   std::uint64_t before;
