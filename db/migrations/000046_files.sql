@@ -7,8 +7,8 @@ CREATE TABLE file_store (
   id uuid NOT NULL,
   -- for people: the folder, or s3://BUCKET/PREFIX
   place text NOT NULL CHECK (char_length(place) BETWEEN 1 AND 4096),
-  -- the database that may delete files, by the identifier of its cluster and its oid. A restored copy of the database is another one, and deletes
-  -- nothing that the original needs.
+  -- The database that may write and delete files: the identifier of its cluster, its oid and a random part. The file strata-files.json has the same
+  -- text. A restored copy of the database has another identifier, and changes nothing that the original needs.
   owner text NOT NULL CHECK (char_length(owner) <= 100)
 );
 
@@ -17,7 +17,8 @@ ALTER TABLE blobs
   ADD COLUMN is_outside boolean NOT NULL DEFAULT false,
   -- the SHA-256 of each MiB, one after the other, so that the server can check a part of a file without the rest
   ADD COLUMN chunk_sums bytea,
-  -- when the server noticed that nothing uses the content, or when an upload began; null for content in use
+  -- When the server noticed that nothing uses the content, or when an upload began. For content in the database: when it moved there, if its file
+  -- still exists. Otherwise null.
   ADD COLUMN unused timestamptz,
   -- the file store may lose this file at any time, so new content with this hash goes into blob_chunks
   ADD COLUMN removing timestamptz,

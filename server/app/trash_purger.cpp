@@ -59,7 +59,7 @@ Result<bool> TrashPurger::purge_audit() {
 Result<bool> TrashPurger::sweep_files() {
   const auto now = std::chrono::steady_clock::now();
   if (!have_listed_files_ || now - files_listed_ >= kBetweenLists) {
-    STRATA_TRY(files_.find_superfluous(keep_files_));
+    STRATA_TRY(files_.find_superfluous());
     files_listed_ = now;
     have_listed_files_ = true;
   }

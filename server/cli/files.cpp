@@ -82,7 +82,9 @@ Result<void> check_files(store::Store& store, const FileOptions&) {
 
 Result<void> adopt_files(store::Store& store, const FileOptions&) {
   STRATA_TRY(store.files().adopt());
-  std::cout << "this database owns the files now, and the server deletes unused ones" << std::endl;
+  std::cout << "this database owns the files now: the server stores new ones outside the database, "
+               "and deletes unused ones"
+            << std::endl;
   return {};
 }
 
@@ -105,7 +107,7 @@ Command add_files(CLI::App& app) {
       ->add_option("--to", options->to, "files or database")
       ->check(CLI::IsMember({"files", "database"}))
       ->capture_default_str();
-  add("adopt", "Let a restored copy of the database, instead of the original, delete unused files",
+  add("adopt", "Let a restored copy of the database write and delete files, instead of the original",
       adopt_files);
   return choosing<FileOptions>(parent, options, std::move(works));
 }

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "core/temporary_file.h"
 #include "core/text/hex.h"
 #include "core/uuid.h"
+#include "store/files/files_mark.h"
 #include "store/pg/blobs.h"
 
 namespace strata::store {
@@ -19,21 +19,32 @@ constexpr int kUsersShown = 5;
 constexpr std::int64_t kMaxInMemory = 64 << 20;  // larger content goes through a temporary file
 constexpr std::chrono::hours kSuperfluousAfter{24};
 
-// Identifies this database among its restored copies.
-constexpr auto kDatabaseId =
-    sql("((SELECT system_identifier::text FROM pg_control_system()) || '/' || "
-        "(SELECT oid::text FROM pg_database WHERE datname = current_database()))");
+// SQL: the content of the blob `b` must be read from its file.
+constexpr auto kNeedsFile = sql("b.is_outside AND b.removing IS NULL AND NOT (", kIsUnused, ")");
+// SQL: nothing may need the file of a blob any longer, neither an upload that began before the blob
+// was marked ($1), nor a backup of the database ($2).
+constexpr auto kMayRemove =
+    sql("removing <= clock_timestamp() - make_interval(secs => $1) "
+        "AND coalesce(unused, removing) <= clock_timestamp() - make_interval(secs => $2)");
 
-std::string mark_text(const Uuid& id) {
-  return nlohmann::json{{"format", 1}, {"id", to_string(id)}}.dump() + "\n";
+tl::unexpected<Error> no_place() {
+  return fail(ErrorCode::malformed, "No place for files",
+              "Name the folder or the bucket of the files with --files.", "--files");
 }
 
-// Returns nothing for a text that is not a mark.
-std::optional<Uuid> id_in_mark(const std::string& text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_object() || !json.contains("id") || !json["id"].is_string()) return std::nullopt;
-  return parse_uuid(json["id"].get<std::string>());
+tl::unexpected<Error> another_site(const std::string& place) {
+  return fail(ErrorCode::conflict, "Files of another site",
+              place + " contains the files of another site (" + kFilesMark +
+                  "). Choose another folder or prefix.",
+              "--files");
 }
+
+bool is_of_site(const std::string& text, const Uuid& id) {
+  const auto mark = parse_files_mark(text);
+  return mark && mark->id == id;
+}
+
+FilesMark read_row(const PgResult& row) { return {row.uuid(0, 0), row.text(0, 1)}; }
 
 }  // namespace
 
@@ -50,29 +61,39 @@ Result<void> Files::open(std::unique_ptr<FileStore> files) {
     Uuid id;
     std::int64_t outside = 0;
   };
-  // The first server creates the row. Other servers then read its id.
+  const std::string owner = to_string(random_uuid());
+  // The first server creates the row. Others then find its id.
   const auto known = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<Known> {
     STRATA_TRY(connection.query(sql("INSERT INTO file_store (id, place, owner) VALUES ($1, $2, ",
-                                    kDatabaseId, ") ON CONFLICT DO NOTHING"),
-                                Params().uuid(random_uuid()).text(shown)));
+                                    kDatabaseId, " || '/' || $3) ON CONFLICT DO NOTHING"),
+                                Params().uuid(random_uuid()).text(shown).text(owner)));
     const auto row = STRATA_TRY(connection.query(
-        "SELECT id, (SELECT count(*) FROM blobs WHERE is_outside AND removing IS NULL) "
-        "FROM file_store"));
+        sql("SELECT id, (SELECT count(*) FROM blobs b WHERE ", kNeedsFile, ") FROM file_store")));
     return Known{row.uuid(0, 0), row.integer(0, 1)};
   }));
   const auto mark = STRATA_TRY(files->read_mark());
-  if (mark && id_in_mark(*mark) != known.id)
-    return fail(ErrorCode::conflict, "Files of another site",
-                shown + " contains the files of another site (" + kFilesMark +
-                    "). Choose another folder or prefix.",
-                "--files");
+  if (mark && !is_of_site(*mark, known.id)) return another_site(shown);
   if (!mark && known.outside > 0)
     return fail(ErrorCode::conflict, "Files not found",
                 shown + " has no " + kFilesMark + ", but " + std::to_string(known.outside) +
                     " files of this site are outside the database. Check that the disk is mounted, "
                     "and that --files names the right place.",
                 "--files");
-  if (!mark) STRATA_TRY(files->write_mark(mark_text(known.id)));
+  if (!mark) {
+    // No other database uses the new place, so a restored copy owns it, too.
+    const auto own = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<FilesMark> {
+      STRATA_TRY(connection.query(
+          sql("UPDATE file_store SET owner = ", kDatabaseId,
+              " || '/' || $1 WHERE NOT starts_with(owner, ", kDatabaseId, " || '/')"),
+          Params().text(owner)));
+      const auto row = STRATA_TRY(connection.query("SELECT id, owner FROM file_store"));
+      return read_row(row);
+    }));
+    STRATA_TRY(files->write_mark(to_text(own)));
+    // Another site may have chosen the same place at the same time.
+    const auto written = STRATA_TRY(files->read_mark());
+    if (!written || !is_of_site(*written, known.id)) return another_site(shown);
+  }
   auto noted = pool_.write([&](PgConnection& connection) {
     return connection.query("UPDATE file_store SET place = $1 WHERE place <> $1",
                             Params().text(shown));
@@ -94,32 +115,30 @@ Result<void> Files::check_open() {
               "--files");
 }
 
-Result<bool> Files::owns_files() {
-  return pool_.read([&](PgConnection& connection) -> Result<bool> {
-    const auto row =
-        STRATA_TRY(connection.query(sql("SELECT 1 FROM file_store WHERE owner = ", kDatabaseId)));
-    return row.rows() > 0;
-  });
-}
+Result<bool> Files::owns_files() { return blobs_.owns_files(); }
 
 Result<void> Files::adopt() {
-  return pool_.write([&](PgConnection& connection) -> Result<void> {
-    const auto done =
-        STRATA_TRY(connection.query(sql("UPDATE file_store SET owner = ", kDatabaseId)));
-    if (done.affected() > 0) return {};
-    return fail(ErrorCode::not_found, "No files",
-                "This site has no files outside the database yet. Use --files to specify a place.");
-  });
+  if (!is_open()) return no_place();
+  // Until the mark is written, no database owns the files, and the command can be repeated.
+  const auto own = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<FilesMark> {
+    const auto row = STRATA_TRY(connection.query(
+        sql("UPDATE file_store SET owner = ", kDatabaseId, " || '/' || $1 RETURNING id, owner"),
+        Params().text(to_string(random_uuid()))));
+    return read_row(row);
+  }));
+  return blobs_.files()->write_mark(to_text(own));
 }
 
 Result<FilesFacts> Files::facts() {
   return pool_.read([&](PgConnection& connection) -> Result<FilesFacts> {
-    const auto row = STRATA_TRY(connection.query(
-        "SELECT coalesce((SELECT place FROM file_store), ''), "
-        "count(*) FILTER (WHERE is_outside AND removing IS NULL), "
-        "coalesce(sum(bytes) FILTER (WHERE is_outside AND removing IS NULL), 0)::bigint, "
-        "count(*) FILTER (WHERE NOT is_outside), "
-        "coalesce(sum(bytes) FILTER (WHERE NOT is_outside), 0)::bigint FROM blobs"));
+    const auto row = STRATA_TRY(
+        connection.query(sql("SELECT coalesce((SELECT place FROM file_store), ''), "
+                             "count(*) FILTER (WHERE needs_file), "
+                             "coalesce(sum(bytes) FILTER (WHERE needs_file), 0)::bigint, "
+                             "count(*) FILTER (WHERE NOT is_outside), "
+                             "coalesce(sum(bytes) FILTER (WHERE NOT is_outside), 0)::bigint "
+                             "FROM (SELECT bytes, is_outside, ",
+                             kNeedsFile, " AS needs_file FROM blobs b) b")));
     return FilesFacts{row.text(0, 0), row.integer(0, 1), row.integer(0, 2), row.integer(0, 3),
                       row.integer(0, 4)};
   });
@@ -164,51 +183,59 @@ Result<bool> Files::sweep(std::chrono::seconds keep, std::chrono::seconds rest) 
     return old.rows();
   }));
   bool more = marked == kRowsAtOnce;
-  STRATA_TRY(remove_marked(rest, more));
+  STRATA_TRY(remove_marked(keep, rest, more));
   return more;
 }
 
-Result<void> Files::remove_marked(std::chrono::seconds rest, bool& more) {
+Result<void> Files::remove_marked(std::chrono::seconds keep, std::chrono::seconds rest,
+                                  bool& more) {
   const auto due = STRATA_TRY(pool_.read([&](PgConnection& connection) {
     return connection.query(
-        "SELECT sha256 FROM blobs WHERE removing <= clock_timestamp() - make_interval(secs => $1) "
-        "ORDER BY removing LIMIT $2",
-        Params().real(double(rest.count())).integer(kRowsAtOnce));
+        sql("SELECT sha256 FROM blobs WHERE ", kMayRemove, " ORDER BY removing LIMIT $3"),
+        Params().real(double(rest.count())).real(double(keep.count())).integer(kRowsAtOnce));
   }));
-  for (int i = 0; i < due.rows(); ++i) STRATA_TRY(finish(due.bytes(i, 0), rest));
+  // A file that cannot be deleted does not keep the others.
+  Result<void> done;
+  for (int i = 0; i < due.rows(); ++i)
+    if (auto finished = finish(due.bytes(i, 0), keep, rest); !finished && done)
+      done = std::move(finished);
   more = more || due.rows() == kRowsAtOnce;
-  return {};
+  return done;
 }
 
 // Deletes the file of a row that is marked, or the mark if there is no file. The row stays locked
-// during the deletion, so no other server deletes a later file of this hash.
-Result<void> Files::finish(Bytes hash, std::chrono::seconds rest) {
-  return pool_.write([&](PgConnection& connection) -> Result<void> {
+// until then, so no other server deletes a later file of this hash.
+Result<void> Files::finish(Bytes hash, std::chrono::seconds keep, std::chrono::seconds rest) {
+  static constexpr auto kDelete = sql("DELETE FROM blobs b WHERE sha256 = $1 AND ", kIsUnused);
+  std::optional<Error> refused;
+  STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<void> {
     const auto row = STRATA_TRY(connection.query(
-        sql("SELECT is_outside, ", kIsUnused,
-            " FROM blobs b WHERE sha256 = $1 "
-            "AND removing <= clock_timestamp() - make_interval(secs => $2) FOR UPDATE SKIP LOCKED"),
-        Params().bytes(hash).real(double(rest.count()))));
+        sql("SELECT is_outside, ", kIsUnused, " FROM blobs b WHERE ", kMayRemove,
+            " AND sha256 = $3 FOR UPDATE SKIP LOCKED"),
+        Params().real(double(rest.count())).real(double(keep.count())).bytes(hash)));
     if (row.rows() == 0) return {};
     const bool is_outside = row.boolean(0, 0), is_unused = row.boolean(0, 1);
-    const char* next = "UPDATE blobs SET removing = NULL WHERE sha256 = $1";
+    const char* next = "UPDATE blobs SET removing = NULL, unused = NULL WHERE sha256 = $1";
     if (!is_outside || is_unused) {
-      const bool existed = STRATA_TRY(blobs_.files()->remove(sha256_of(hash)));
-      if (existed)
+      const auto existed = blobs_.files()->remove(sha256_of(hash));
+      if (!existed) refused = existed.error();
+      // A request that failed may still arrive.
+      if (!existed || *existed)
         next = "UPDATE blobs SET removing = clock_timestamp() WHERE sha256 = $1";
-      else if (is_outside)
-        next = "DELETE FROM blobs WHERE sha256 = $1";
+      else if (is_unused)
+        next = kDelete.c_str();
     }
     STRATA_TRY(connection.query(next, Params().bytes(hash)));
     return {};
-  });
+  }));
+  return refused ? tl::unexpected(*refused) : Result<void>{};
 }
 
-Result<void> Files::find_superfluous(std::chrono::seconds keep) {
+Result<void> Files::find_superfluous() {
   if (!is_open()) return {};
   const bool owns = STRATA_TRY(owns_files());
   if (!owns) return {};
-  const auto oldest = std::chrono::system_clock::now() - keep;
+  const auto oldest = std::chrono::system_clock::now() - kSuperfluousAfter;
   return each_without_row([&](const std::vector<StoredFile>& batch) {
     return pool_.write([&](PgConnection& connection) -> Result<void> {
       PgArray hashes(oid::kBytea), sizes(oid::kInt8);
@@ -218,10 +245,11 @@ Result<void> Files::find_superfluous(std::chrono::seconds keep) {
         sizes.add(static_cast<std::int64_t>(file.bytes));
       }
       STRATA_TRY(connection.query(
-          "INSERT INTO blobs (sha256, bytes, is_outside, chunk_sums, unused, removing) "
-          "SELECT sha256, bytes, true, '', clock_timestamp(), clock_timestamp() "
+          "INSERT INTO blobs (sha256, bytes, is_outside, chunk_sums, unused) "
+          "SELECT sha256, bytes, true, '', clock_timestamp() "
           "FROM unnest($1::bytea[], $2::bigint[]) AS found (sha256, bytes) ORDER BY sha256 "
-          "ON CONFLICT (sha256) DO UPDATE SET removing = clock_timestamp() "
+          "ON CONFLICT (sha256) DO UPDATE "
+          "SET unused = clock_timestamp(), removing = clock_timestamp() "
           "WHERE NOT blobs.is_outside AND blobs.removing IS NULL",
           Params().array(hashes).array(sizes)));
       return {};
@@ -291,10 +319,15 @@ Result<void> Files::each_row(bool is_outside, Progress& progress, const char* wh
 }
 
 Result<Files::Moved> Files::move(Direction direction, Progress& progress) {
-  if (!is_open())
-    return fail(ErrorCode::malformed, "No place for files",
-                "Specify the folder or the bucket of the files with --files.", "--files");
+  if (!is_open()) return no_place();
   const bool into = direction == Direction::into_database;
+  const bool may = into || STRATA_TRY(owns_files());
+  if (!may)
+    return fail(ErrorCode::conflict, "Files of another database",
+                "This database is a copy of the one that owns " + blobs_.files()->place() +
+                    ", so it cannot move files to it. If it replaces the original, run `strata "
+                    "files adopt` first.",
+                "--files");
   Moved moved;
   STRATA_TRY(each_row(into, progress, "Moving", [&](const Row& row) -> Result<void> {
     if (!into && static_cast<std::uint64_t>(row.bytes) > blobs_.files()->max_bytes()) {
@@ -363,7 +396,7 @@ Result<bool> Files::put_out(const Content& content, const std::function<bool()>&
 Result<bool> Files::take_in(const Content& content, const std::function<bool()>& cancelled) {
   return pool_.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<bool> {
     const auto changed = STRATA_TRY(connection.query(
-        "UPDATE blobs SET is_outside = false, chunk_sums = NULL, unused = NULL, "
+        "UPDATE blobs SET is_outside = false, chunk_sums = NULL, unused = clock_timestamp(), "
         "removing = clock_timestamp() WHERE sha256 = $1 AND is_outside AND removing IS NULL",
         Params().bytes(content.hash)));
     if (changed.affected() == 0) return false;
@@ -374,9 +407,7 @@ Result<bool> Files::take_in(const Content& content, const std::function<bool()>&
 
 Result<Files::Checked> Files::check(const std::function<void(const FileProblem&)>& found,
                                     Progress& progress) {
-  if (!is_open())
-    return fail(ErrorCode::malformed, "No place for files",
-                "Specify the folder or the bucket of the files with --files.", "--files");
+  if (!is_open()) return no_place();
   Checked checked;
   progress.begin_stage(0, 0.95);
   STRATA_TRY(each_row(true, progress, "Checking", [&](const Row& row) -> Result<void> {

@@ -16,8 +16,8 @@ class Blobs;
 class Pool;
 
 struct FilesFacts {
-  std::string place;               // the last place of the files; empty: none was used yet
-  std::int64_t outside_files = 0;  // contents outside the database
+  std::string place;               // where the files are, as last used; empty: never used
+  std::int64_t outside_files = 0;  // contents in use that are outside the database
   std::int64_t outside_bytes = 0;
   std::int64_t inside_files = 0;
   std::int64_t inside_bytes = 0;
@@ -44,6 +44,9 @@ struct FileFaults {
 //      database, so that no upload relies on the file
 //   3. the file is deleted after kRest, when no upload that began before step 2 continues
 //   4. the row is deleted after another kRest, when no delayed request can delete a later file
+//
+// The file of content that was moved into the database remains for `keep`, too, because a backup of
+// the database may need it.
 class Files {
  public:
   static constexpr std::chrono::seconds kRest = std::chrono::hours(1);
@@ -57,9 +60,10 @@ class Files {
   bool is_open() const;
   // Returns a `conflict` error if content is outside the database, but no place is open.
   Result<void> check_open();
-  // Returns whether this database may delete files. A restored copy must not delete files.
+  // Returns whether this database may write and delete files. A restored copy of the database may
+  // not, as long as it uses the place of the original.
   Result<bool> owns_files();
-  // Allows this database, and no other database, to delete files.
+  // Lets this database write and delete files, and no other.
   Result<void> adopt();
 
   Result<FilesFacts> facts();
@@ -68,9 +72,9 @@ class Files {
   // Deletes files that nothing has used for `keep`. Works in small steps, and returns true if there
   // may be more to do. Does nothing if this database does not own the files.
   Result<bool> sweep(std::chrono::seconds keep, std::chrono::seconds rest = kRest);
-  // Finds files without a row that are older than `keep`, for the sweep. Such files remain if an
-  // older database is restored.
-  Result<void> find_superfluous(std::chrono::seconds keep);
+  // Finds files without a row that are older than a day. The sweep then deletes them after `keep`.
+  // Such files remain if an older database is restored, and a restore of a newer backup needs them.
+  Result<void> find_superfluous();
 
   enum class Direction { out_of_database, into_database };
   struct Moved {
@@ -93,8 +97,8 @@ class Files {
     Sha256 hash{};
     std::int64_t bytes = 0;
   };
-  Result<void> remove_marked(std::chrono::seconds rest, bool& more);
-  Result<void> finish(Bytes hash, std::chrono::seconds rest);
+  Result<void> remove_marked(std::chrono::seconds keep, std::chrono::seconds rest, bool& more);
+  Result<void> finish(Bytes hash, std::chrono::seconds keep, std::chrono::seconds rest);
   Result<void> each_without_row(
       const std::function<Result<void>(const std::vector<StoredFile>&)>& visit);
   Result<std::vector<Row>> rows_after(Bytes last, bool is_outside);

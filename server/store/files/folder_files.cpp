@@ -215,6 +215,15 @@ Result<std::optional<std::string>> FolderFiles::read_mark() {
 }
 
 Result<void> FolderFiles::write_mark(const std::string& text) {
+  const bool is_first = !STRATA_TRY(read_mark());
+  if (is_first) STRATA_TRY(check_is_new());
+  STRATA_TRY(make_folder(folder_ / kUnfinished));
+  return write_file(folder_ / kFilesMark, [&](const std::function<Result<void>(Bytes)>& sink) {
+    return sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  });
+}
+
+Result<void> FolderFiles::check_is_new() const {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder_, error)) {
     const std::string name = entry.path().filename();
@@ -224,11 +233,7 @@ Result<void> FolderFiles::write_mark(const std::string& text) {
                       ". Choose a new folder for the files of this site.",
                   "--files");
   }
-  if (error) return failed_file(folder_, "Cannot list", error.value());
-  STRATA_TRY(make_folder(folder_ / kUnfinished));
-  return write_file(folder_ / kFilesMark, [&](const std::function<Result<void>(Bytes)>& sink) {
-    return sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  });
+  return error ? failed_file(folder_, "Cannot list", error.value()) : Result<void>{};
 }
 
 }  // namespace strata::store

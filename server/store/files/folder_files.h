@@ -28,6 +28,8 @@ class FolderFiles : public FileStore {
   explicit FolderFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
   std::filesystem::path path_of(const Sha256& hash) const { return folder_ / file_name_of(hash); }
   Result<void> check_folder() const;
+  // Returns a `conflict` error if the folder contains files that Strata has not made.
+  Result<void> check_is_new() const;
   Result<void> write_file(const std::filesystem::path& file, const Write& write);
 
   const std::filesystem::path folder_;  // absolute

@@ -4,6 +4,7 @@
 
 #include "core/log.h"
 #include "core/text/hex.h"
+#include "store/files/files_mark.h"
 #include "store/pg/sql.h"
 
 namespace strata::store {
@@ -22,6 +23,14 @@ bool is_reliable(const Content& content) {
   return content.uploaded && std::chrono::steady_clock::now() - *content.uploaded < kUploadLasts;
 }
 
+// SQL: the row of the blob `b` can be deleted together with its content. For a day after the last
+// request to delete the file of a blob, its row prevents a new upload, because the request may
+// arrive late.
+constexpr auto kMayDrop =
+    sql("NOT is_outside AND (removing IS NULL OR removing < clock_timestamp() - interval '1 day') "
+        "AND ",
+        kIsUnused);
+
 tl::unexpected<Error> damaged_rows() {
   return fail(ErrorCode::damaged, "Damaged content",
               "The stored content is incomplete. Restore the database from a backup.");
@@ -35,8 +44,28 @@ struct Blobs::Place {
   std::vector<std::uint8_t> chunk_sums;
 };
 
+Result<bool> Blobs::owns_files() {
+  if (!files_) return false;
+  const auto owner = STRATA_TRY(pool_.read([](PgConnection& connection) -> Result<std::string> {
+    const auto row = STRATA_TRY(connection.query(
+        sql("SELECT owner FROM file_store WHERE starts_with(owner, ", kDatabaseId, " || '/')")));
+    return row.rows() > 0 ? row.text(0, 0) : std::string();
+  }));
+  if (owner.empty()) return false;
+  const auto text = STRATA_TRY(files_->read_mark());
+  if (!text)
+    return fail(ErrorCode::unavailable, "Files unavailable",
+                files_->place() + " has no " + kFilesMark + ". Check that the disk is mounted.",
+                "--files");
+  const auto mark = parse_files_mark(*text);
+  return mark && mark->owner == owner;
+}
+
 Result<void> Blobs::upload(std::span<Content> contents, const std::function<bool()>& cancelled) {
-  if (!files_) return {};
+  if (!files_ || contents.empty()) return {};
+  // Otherwise the owner of the files would find a file that it does not know, and delete it.
+  const bool owns = STRATA_TRY(owns_files());
+  if (!owns) return {};
   for (Content& content : contents) {
     if (content.uploaded || static_cast<std::uint64_t>(content.bytes) > files_->max_bytes())
       continue;
@@ -46,7 +75,9 @@ Result<void> Blobs::upload(std::span<Content> contents, const std::function<bool
       return connection.query(
           "INSERT INTO blobs (sha256, bytes, is_outside, chunk_sums, unused) "
           "VALUES ($1, $2, true, $3, clock_timestamp()) "
-          "ON CONFLICT (sha256) DO UPDATE SET unused = clock_timestamp() "
+          // The sweep knows only the size of a superfluous file, which may be damaged.
+          "ON CONFLICT (sha256) DO UPDATE SET unused = clock_timestamp(), "
+          "bytes = excluded.bytes, chunk_sums = excluded.chunk_sums "
           "WHERE blobs.is_outside AND blobs.removing IS NULL",
           Params().bytes(content.hash).integer(content.bytes).bytes(sums));
     }));
@@ -234,9 +265,10 @@ Result<void> keep_blob(PgConnection& connection, const Content& content,
     if (!is_outside || (stays && is_reliable(content))) return {};
     // The file may be missing, or the sweep is removing it.
     auto taken_in = STRATA_TRY(connection.query(
-        "UPDATE blobs SET is_outside = false, chunk_sums = NULL, unused = NULL, "
+        "UPDATE blobs SET is_outside = false, bytes = $2, chunk_sums = NULL, "
+        "unused = CASE WHEN removing IS NULL THEN clock_timestamp() ELSE unused END, "
         "removing = coalesce(removing, clock_timestamp()) WHERE sha256 = $1 AND is_outside",
-        Params().bytes(content.hash)));
+        Params().bytes(content.hash).integer(content.bytes)));
     if (taken_in.affected() > 0) return write_chunks(connection, content, cancelled);
   }
 }
@@ -251,21 +283,18 @@ Result<void> drop_unused(PgConnection& connection,
       connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE",
                        Params().array(list));
   if (!locked) return tl::unexpected(locked.error());
-  auto done = connection.query(
-      sql("DELETE FROM blobs b WHERE sha256 = any($1) AND NOT is_outside AND ", kIsUnused),
-      Params().array(list));
+  auto done = connection.query(sql("DELETE FROM blobs b WHERE sha256 = any($1) AND ", kMayDrop),
+                               Params().array(list));
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
 Result<std::int64_t> drop_all_unused(PgConnection& connection) {
-  auto locked =
-      STRATA_TRY(connection.query(sql("SELECT sha256 FROM blobs b WHERE NOT is_outside AND ",
-                                      kIsUnused, " FOR UPDATE SKIP LOCKED")));
+  auto locked = STRATA_TRY(connection.query(
+      sql("SELECT sha256 FROM blobs b WHERE ", kMayDrop, " FOR UPDATE SKIP LOCKED")));
   PgArray list(oid::kBytea);
   for (int i = 0; i < locked.rows(); ++i) list.add(locked.bytes(i, 0));
   auto done = STRATA_TRY(connection.query(
-      sql("DELETE FROM blobs b WHERE sha256 = any($1) AND NOT is_outside AND ", kIsUnused),
-      Params().array(list)));
+      sql("DELETE FROM blobs b WHERE sha256 = any($1) AND ", kMayDrop), Params().array(list)));
   return done.affected();
 }
 

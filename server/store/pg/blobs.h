@@ -22,9 +22,10 @@ class Blobs {
   // Sets the file store. Call before other threads use this object.
   void use(std::unique_ptr<FileStore> files) { files_ = std::move(files); }
   FileStore* files() const { return files_.get(); }  // null: all new content is in the database
+  Result<bool> owns_files();                         // see Files
 
-  // Stores the contents in the file store, if there is one. Call it before the transaction that
-  // needs them, because an upload may take long.
+  // Stores the contents in the file store, if there is one and this database owns it. Call it
+  // before the transaction that needs them, because an upload may take long.
   Result<void> upload(std::span<Content> contents, const std::function<bool()>& cancelled);
   Result<void> upload(Content& content) { return upload({&content, 1}, {}); }
 

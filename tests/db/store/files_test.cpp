@@ -74,8 +74,9 @@ class FilesOutside : public ::testing::Test {
   }
 
   // A store on the same database and folder.
-  std::unique_ptr<Store> opened() {
-    auto store = test::open_store(dsn_);
+  std::unique_ptr<Store> opened() { return opened(dsn_); }
+  std::unique_ptr<Store> opened(const std::string& dsn) {
+    auto store = test::open_store(dsn);
     auto files = std::make_unique<FaultyFiles>(FolderFiles::open(place()).value());
     faulty_ = files.get();
     const auto open = store->files().open(std::move(files));
@@ -148,7 +149,17 @@ class FilesOutside : public ::testing::Test {
   void run(const std::string& statement) {
     ASSERT_TRUE(PgConnection::connect(dsn_)->script(statement));
   }
-  // Deletes unused files without a delay: the file in the first pass, its row in the second pass.
+  // A database that names the same folder, as a restored copy does.
+  std::string copied_database() {
+    const auto row =
+        PgConnection::connect(dsn_)->query_once("SELECT id::text, place, owner FROM file_store");
+    auto copy = test::fresh_database();
+    EXPECT_TRUE(PgConnection::connect(copy)->query(
+        "INSERT INTO file_store (id, place, owner) VALUES ($1::uuid, $2, $3)",
+        Params().text(row->text(0, 0)).text(row->text(0, 1)).text(row->text(0, 2))));
+    return copy;
+  }
+  // Deletes what nothing uses at once: a file in the first pass, its row in the second.
   void sweep_twice() {
     for (int pass = 0; pass < 2; ++pass) {
       const auto swept = store_->files().sweep(seconds(0), seconds(0));
@@ -243,6 +254,75 @@ TEST_F(FilesOutside, content_whose_file_is_being_removed_goes_into_the_database)
   EXPECT_EQ(files(), 0u);
   expect_whole(*store_, again);
   EXPECT_EQ(count("blobs WHERE removing IS NOT NULL"), 0);
+}
+
+TEST_F(FilesOutside, a_row_whose_file_may_still_be_deleted_stays_until_that_is_over) {
+  const Model model = create("bust");
+  ASSERT_TRUE(store_->models().remove(model.id));
+  ASSERT_TRUE(store_->files().sweep(seconds(0), std::chrono::hours(1)));  // only marks
+  const Model again = create("again");
+  ASSERT_TRUE(store_->models().remove(again.id));
+  EXPECT_EQ(store_->attachments().drop_orphans().value(), 0);
+  EXPECT_EQ(count("blobs WHERE removing IS NOT NULL"), 3)
+      << "without the row, an upload would rely on the file";
+  sweep_twice();
+  EXPECT_EQ(count("blobs") + static_cast<std::int64_t>(files()), 0);
+}
+
+TEST_F(FilesOutside, a_site_that_has_left_the_folder_can_delete_its_content) {
+  const Model model = create("bust");
+  Progress progress;
+  ASSERT_TRUE(store_->files().move(Direction::into_database, progress));
+  const auto plain = test::open_store(dsn_);
+  ASSERT_TRUE(plain->models().remove(model.id));
+  run("UPDATE blobs SET removing = removing - interval '2 days'");
+  EXPECT_EQ(plain->attachments().drop_orphans().value(), 3);
+  EXPECT_EQ(count("blob_chunks"), 0);
+}
+
+TEST_F(FilesOutside, a_deletion_that_failed_may_still_happen_within_the_hour) {
+  const Model model = create("bust");
+  ASSERT_TRUE(store_->models().remove(model.id));
+  ASSERT_TRUE(store_->files().sweep(seconds(0), std::chrono::hours(1)));  // only marks
+  run("UPDATE blobs SET removing = removing - interval '2 hours'");
+  faulty_->fault = ErrorCode::unavailable;
+  EXPECT_FALSE(store_->files().sweep(seconds(0), std::chrono::hours(1)));
+  EXPECT_EQ(count("blobs WHERE removing < clock_timestamp() - interval '1 hour'"), 0);
+  faulty_->fault.reset();
+  for (const auto& content : {geometry_, source_, image_}) fs::remove(file_of(content));
+  ASSERT_TRUE(store_->files().sweep(seconds(0), std::chrono::hours(1)));
+  EXPECT_EQ(count("blobs WHERE removing IS NOT NULL"), 3) << "new content must not rely on a file";
+}
+
+TEST_F(FilesOutside, a_backup_can_rely_on_files_that_were_moved_into_the_database) {
+  const Model model = create("bust");
+  Progress progress;
+  ASSERT_TRUE(store_->files().move(Direction::into_database, progress));
+  for (int pass = 0; pass < 2; ++pass)
+    ASSERT_TRUE(store_->files().sweep(std::chrono::hours(24), seconds(0)));
+  EXPECT_EQ(files(), 3u);
+  sweep_twice();
+  EXPECT_EQ(files(), 0u);
+  expect_whole(*store_, model);
+}
+
+TEST_F(FilesOutside, a_newer_backup_can_be_restored_after_an_older_one) {
+  const Model model = create("bust");
+  ASSERT_TRUE(store_->models().remove(model.id));
+  run("DELETE FROM blobs");  // as in an older backup
+  for (const auto& content : {geometry_, source_, image_})
+    fs::last_write_time(file_of(content),
+                        fs::file_time_type::clock::now() - std::chrono::hours(24 * 60));
+  ASSERT_TRUE(store_->files().find_superfluous());
+  EXPECT_EQ(count("blobs WHERE is_outside"), 3);
+  for (int pass = 0; pass < 2; ++pass)
+    ASSERT_TRUE(store_->files().sweep(std::chrono::hours(24 * 30), seconds(0)));
+  EXPECT_EQ(files(), 3u) << "found only now";
+  fs::resize_file(file_of(geometry_), 100);
+  run("UPDATE blobs SET bytes = 100 WHERE bytes = " + std::to_string(geometry_.size()));
+  const Model again = create("again");
+  EXPECT_EQ(count("blobs WHERE is_outside"), 3);
+  expect_whole(*store_, again);
 }
 
 TEST_F(FilesOutside, those_who_upload_delete_and_sweep_at_once_lose_nothing) {
@@ -442,7 +522,7 @@ TEST_F(FilesOutside, the_check_lists_missing_changed_and_superfluous_files) {
     }
   }
   // The sweep finds the superfluous file, and leaves the others for a repair.
-  ASSERT_TRUE(store_->files().find_superfluous(std::chrono::hours(24)));
+  ASSERT_TRUE(store_->files().find_superfluous());
   sweep_twice();
   EXPECT_FALSE(fs::exists(file_of(other)));
   EXPECT_TRUE(fs::exists(file_of(geometry_)));
@@ -473,6 +553,53 @@ TEST_F(FilesOutside, a_restored_copy_of_the_database_deletes_no_files_until_it_o
   ASSERT_TRUE(store_->files().adopt());
   sweep_twice();
   EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(FilesOutside, two_databases_of_one_folder_do_not_delete_the_files_of_each_other) {
+  const Model model = create("bust");
+  const auto copy_dsn = copied_database();
+  const auto copy = opened(copy_dsn);
+  EXPECT_FALSE(copy->files().owns_files().value());
+  const auto in_copy = create(*copy, "bust of the copy");
+  ASSERT_TRUE(in_copy) << in_copy.error().detail;
+  expect_whole(*copy, *in_copy);
+  EXPECT_EQ(copy->files().facts()->outside_files, 0) << "the original would delete its files";
+  Progress progress;
+  EXPECT_EQ(copy->files().move(Direction::out_of_database, progress).error().code,
+            ErrorCode::conflict);
+
+  ASSERT_TRUE(copy->files().adopt());
+  EXPECT_TRUE(copy->files().owns_files().value());
+  EXPECT_FALSE(store_->files().owns_files().value());
+  ASSERT_TRUE(store_->models().remove(model.id));
+  sweep_twice();
+  EXPECT_EQ(files(), 3u) << "the copy may need them";
+  EXPECT_EQ(copy->files().move(Direction::out_of_database, progress)->files, 3);
+  expect_whole(*copy, *in_copy);
+
+  ASSERT_TRUE(store_->files().adopt());
+  EXPECT_TRUE(store_->files().owns_files().value());
+  EXPECT_FALSE(copy->files().owns_files().value());
+}
+
+TEST_F(FilesOutside, a_copy_of_the_cluster_owns_no_files_after_the_original_has_adopted_them) {
+  // Such a copy has the identifiers of the original.
+  run("CREATE TABLE of_copy AS SELECT owner FROM file_store");
+  ASSERT_TRUE(store_->files().adopt());
+  EXPECT_TRUE(store_->files().owns_files().value());
+  run("UPDATE file_store SET owner = of_copy.owner FROM of_copy");
+  EXPECT_FALSE(store_->files().owns_files().value());
+}
+
+TEST_F(FilesOutside, content_that_nothing_uses_does_not_hold_a_site_at_its_place) {
+  const Model model = create("bust");
+  const auto plain = test::open_store(dsn_);
+  EXPECT_EQ(plain->files().check_open().error().code, ErrorCode::conflict);
+  ASSERT_TRUE(store_->models().remove(model.id));
+  EXPECT_EQ(count("blobs WHERE is_outside"), 3);
+  EXPECT_TRUE(plain->files().check_open());
+  const auto moved = plain->files().open({(folder_.path() / "new").string(), {}});
+  EXPECT_TRUE(moved) << moved.error().detail;
 }
 
 TEST(FilesInBucket, content_is_checked_swept_and_moved_as_in_a_folder) {
