@@ -1,6 +1,7 @@
 #include "store/files/folder_files.h"
 
 #include <fcntl.h>
+#include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kUnfinished = "unfinished";
+constexpr const char* kLostAndFound = "lost+found";  // only root can read this folder of a disk
 constexpr std::size_t kMaxMark = 4096;
 
 tl::unexpected<Error> failed_file(const fs::path& file, const char* what, int error) {
@@ -103,10 +105,28 @@ Result<void> FolderFiles::check_folder() const {
   return failed_file(mark, "Cannot find", errno);
 }
 
+// Only its user can read a file. For example, the server could not read the files of a
+// `strata files move` that root ran.
+Result<void> FolderFiles::check_user(int descriptor) const {
+  struct stat mark {
+  }, file{};
+  if (stat((folder_ / kFilesMark).c_str(), &mark) != 0 || fstat(descriptor, &file) != 0 ||
+      mark.st_uid == file.st_uid)
+    return {};
+  const passwd* user = getpwuid(mark.st_uid);
+  return fail(ErrorCode::unavailable, "Files of another user",
+              folder_.string() + " belongs to the user " +
+                  (user ? user->pw_name : std::to_string(mark.st_uid)) +
+                  ", who could not read new files. Run the command as this user, for example with "
+                  "`sudo -u`.",
+              "--files");
+}
+
 Result<void> FolderFiles::write_file(const fs::path& file, const Write& write) {
   const UnfinishedFile unfinished(folder_ / kUnfinished / to_string(random_uuid()));
   OpenFile out(unfinished.path(), O_WRONLY | O_CREAT | O_EXCL);
   if (!out) return failed_file(unfinished.path(), "Cannot create", errno);
+  STRATA_TRY(check_user(out.descriptor()));
   STRATA_TRY(write([&](Bytes bytes) -> Result<void> {
     if (!write_all(out.descriptor(), bytes))
       return failed_file(unfinished.path(), "Cannot write", errno);
@@ -122,6 +142,7 @@ Result<void> FolderFiles::write_file(const fs::path& file, const Write& write) {
 Result<void> FolderFiles::put(const Content& content, const std::function<bool()>& cancelled) {
   const fs::path file = path_of(content.hash);
   STRATA_TRY(check_folder());
+  STRATA_TRY(make_folder(folder_ / kUnfinished));  // a copy of a bucket has no such folder
   STRATA_TRY(make_folder(file.parent_path().parent_path()));
   STRATA_TRY(make_folder(file.parent_path()));
   // Another thread may have made these folders, and not yet synced them.
@@ -173,7 +194,8 @@ Result<void> FolderFiles::list(const std::function<Result<void>(const StoredFile
   fs::recursive_directory_iterator entry(folder_, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     const fs::path& path = entry->path();
-    if (entry.depth() == 0 && path.filename() == kUnfinished) {
+    if (entry.depth() == 0 &&
+        (path.filename() == kUnfinished || path.filename() == kLostAndFound)) {
       entry.disable_recursion_pending();
       continue;
     }
@@ -191,6 +213,7 @@ Result<void> FolderFiles::remove_unfinished(std::chrono::seconds age) {
   const auto oldest = std::chrono::system_clock::now() - age;
   std::error_code error;
   fs::directory_iterator entry(folder_ / kUnfinished, error);
+  if (error == std::errc::no_such_file_or_directory) return {};
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     struct stat facts {};
     if (stat(entry->path().c_str(), &facts) != 0) continue;
@@ -227,7 +250,7 @@ Result<void> FolderFiles::check_is_new() const {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder_, error)) {
     const std::string name = entry.path().filename();
-    if (name != kUnfinished && name != kFilesMark && name != "lost+found")
+    if (name != kUnfinished && name != kFilesMark && name != kLostAndFound)
       return fail(ErrorCode::conflict, "Folder not empty",
                   folder_.string() + " contains " + name +
                       ". Choose a new folder for the files of this site.",

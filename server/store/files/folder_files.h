@@ -30,6 +30,7 @@ class FolderFiles : public FileStore {
   Result<void> check_folder() const;
   // Returns a `conflict` error if the folder contains files that Strata has not made.
   Result<void> check_is_new() const;
+  Result<void> check_user(int descriptor) const;  // of a new file
   Result<void> write_file(const std::filesystem::path& file, const Write& write);
 
   const std::filesystem::path folder_;  // absolute

@@ -221,6 +221,45 @@ TEST_F(FolderOfFiles, what_killed_uploads_left_is_removed_after_its_time) {
   EXPECT_FALSE(fs::exists(left));
 }
 
+TEST_F(FolderOfFiles, a_disk_of_its_own_can_be_listed) {
+  const auto files = FolderFiles::open(folder_.path() / "files").value();
+  fs::create_directories(folder_.path() / "files" / "lost+found");
+  ASSERT_TRUE(files->write_mark("a mark"));
+  ASSERT_TRUE(files->put(content(), {}));
+  const fs::path lost = folder_.path() / "files" / "lost+found";
+  fs::permissions(lost, fs::perms::none);  // root ignores this
+  int visited = 0;
+  const auto listed = files->list([&](const StoredFile&) -> Result<void> {
+    ++visited;
+    return {};
+  });
+  fs::permissions(lost, fs::perms::owner_all);
+  EXPECT_TRUE(listed) << listed.error().detail;
+  EXPECT_EQ(visited, 1);
+}
+
+TEST_F(FolderOfFiles, a_copy_of_a_bucket_takes_new_files) {
+  const fs::path folder = folder_.path() / "files";
+  fs::create_directory(folder);
+  std::ofstream(folder / kFilesMark) << "a mark";
+  const auto files = FolderFiles::open(folder).value();
+  EXPECT_TRUE(files->remove_unfinished(std::chrono::hours(24)));
+  const auto put = files->put(content(), {});
+  EXPECT_TRUE(put) << put.error().detail;
+}
+
+TEST_F(FolderOfFiles, a_folder_of_another_user_gets_no_files_that_this_user_cannot_read) {
+  if (geteuid() != 0) GTEST_SKIP() << "SKIPPED: no right to change the owner of a file";
+  const fs::path folder = folder_.path() / "files";
+  const auto files = FolderFiles::open(folder).value();
+  ASSERT_TRUE(files->write_mark("a mark"));
+  ASSERT_EQ(chown((folder / kFilesMark).c_str(), 65534, 65534), 0);
+  EXPECT_EQ(files->put(content(), {}).error().title, "Files of another user");
+  EXPECT_EQ(files->write_mark("another mark").error().title, "Files of another user");
+  EXPECT_EQ(files->read_mark().value(), "a mark");
+  EXPECT_TRUE(fs::is_empty(folder / "unfinished"));
+}
+
 TEST_F(FolderOfFiles, a_full_disk_is_reported_and_leaves_nothing) {
   const fs::path disk = folder_.path() / "disk";
   fs::create_directory(disk);
