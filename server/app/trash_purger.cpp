@@ -42,6 +42,11 @@ bool TrashPurger::is_stopping() {
   return stopping_;
 }
 
+bool TrashPurger::is_interrupted() {
+  const std::lock_guard lock(mutex_);
+  return stopping_ || must_check_;
+}
+
 // These functions return false when they are done, and true if the server stops before that.
 Result<bool> TrashPurger::empty_trash() {
   STRATA_TRY(trash_.expire(keep_));
@@ -57,15 +62,23 @@ Result<bool> TrashPurger::purge_audit() {
 }
 
 Result<bool> TrashPurger::sweep_files() {
-  const auto now = std::chrono::steady_clock::now();
-  if (!have_listed_files_ || now - files_listed_ >= kBetweenLists) {
-    STRATA_TRY(files_.find_superfluous());
-    files_listed_ = now;
-    have_listed_files_ = true;
-  }
+  const auto interrupted = [this] { return is_interrupted(); };
   Result<bool> some = true;
-  while (some && *some && !is_stopping()) some = files_.sweep(keep_files_);
+  while (some && *some && !is_interrupted())
+    some = files_.sweep(keep_files_, store::Files::kRest, interrupted);
+  // Without the right to list a bucket, the server still deletes unused files.
+  if (const auto listed = list_files(); !listed && some) return tl::unexpected(listed.error());
   return some;
+}
+
+Result<void> TrashPurger::list_files() {
+  const auto now = std::chrono::steady_clock::now();
+  if (is_interrupted() || (have_listed_files_ && now - files_listed_ < kBetweenLists)) return {};
+  const auto listed = files_.find_superfluous([this] { return is_interrupted(); });
+  if (!listed && listed.error().code == ErrorCode::cancelled) return {};  // begins again soon
+  files_listed_ = now;
+  have_listed_files_ = true;
+  return listed;
 }
 
 void TrashPurger::run() {

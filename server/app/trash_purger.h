@@ -28,9 +28,11 @@ class TrashPurger {
  private:
   void run();
   bool is_stopping();
+  bool is_interrupted();  // the Trash has work, or the server stops
   Result<bool> empty_trash();
   Result<bool> purge_audit();
   Result<bool> sweep_files();
+  Result<void> list_files();
 
   store::Trash& trash_;
   const std::chrono::days keep_;

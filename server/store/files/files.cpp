@@ -1,6 +1,11 @@
 #include "store/files/files.h"
 
+#include <stdlib.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -16,6 +21,7 @@ namespace {
 
 constexpr int kRowsAtOnce = 500;
 constexpr int kUsersShown = 5;
+constexpr std::size_t kDamagedShown = 20;
 constexpr std::int64_t kMaxInMemory = 64 << 20;  // larger content goes through a temporary file
 constexpr std::chrono::hours kSuperfluousAfter{24};
 
@@ -42,6 +48,30 @@ tl::unexpected<Error> another_site(const std::string& place) {
 bool is_of_site(const std::string& text, const Uuid& id) {
   const auto mark = parse_files_mark(text);
   return mark && mark->id == id;
+}
+
+tl::unexpected<Error> not_moved(const std::vector<Sha256>& damaged) {
+  std::string names;
+  for (std::size_t i = 0; i < std::min(damaged.size(), kDamagedShown); ++i)
+    names += (i == 0 ? "" : ", ") + file_name_of(damaged[i]);
+  return fail(ErrorCode::damaged, "Files damaged",
+              std::to_string(damaged.size()) + " files are missing or changed: " + names +
+                  (damaged.size() > kDamagedShown ? ", …" : "") +
+                  ". All others were moved. Copy these files from a backup, or delete what uses "
+                  "them (`strata files check`), then repeat the command.");
+}
+
+// Creates a file that only this user can read.
+Result<void> make_private_file(TemporaryFile& file) {
+  std::string path = (std::filesystem::temp_directory_path() / "strata-move-XXXXXX").string();
+  const int descriptor = mkstemp(path.data());
+  if (descriptor < 0)
+    return fail(ErrorCode::storage_full, "No temporary file",
+                "Cannot create " + path + ": " + std::strerror(errno) +
+                    ". Choose another folder for temporary files with TMPDIR.");
+  close(descriptor);
+  file.path = path;
+  return {};
 }
 
 FilesMark read_row(const PgResult& row) { return {row.uuid(0, 0), row.text(0, 1)}; }
@@ -149,7 +179,8 @@ FileFaults Files::faults() const {
   return {faults.missing, faults.changed, faults.unreachable};
 }
 
-Result<bool> Files::sweep(std::chrono::seconds keep, std::chrono::seconds rest) {
+Result<bool> Files::sweep(std::chrono::seconds keep, std::chrono::seconds rest,
+                          const std::function<bool()>& cancelled) {
   if (!is_open()) return false;
   const bool owns = STRATA_TRY(owns_files());
   if (!owns) return false;
@@ -183,12 +214,12 @@ Result<bool> Files::sweep(std::chrono::seconds keep, std::chrono::seconds rest) 
     return old.rows();
   }));
   bool more = marked == kRowsAtOnce;
-  STRATA_TRY(remove_marked(keep, rest, more));
+  STRATA_TRY(remove_marked(keep, rest, cancelled, more));
   return more;
 }
 
 Result<void> Files::remove_marked(std::chrono::seconds keep, std::chrono::seconds rest,
-                                  bool& more) {
+                                  const std::function<bool()>& cancelled, bool& more) {
   const auto due = STRATA_TRY(pool_.read([&](PgConnection& connection) {
     return connection.query(
         sql("SELECT sha256 FROM blobs WHERE ", kMayRemove, " ORDER BY removing LIMIT $3"),
@@ -196,7 +227,7 @@ Result<void> Files::remove_marked(std::chrono::seconds keep, std::chrono::second
   }));
   // A file that cannot be deleted does not keep the others.
   Result<void> done;
-  for (int i = 0; i < due.rows(); ++i)
+  for (int i = 0; i < due.rows() && !(cancelled && cancelled()); ++i)
     if (auto finished = finish(due.bytes(i, 0), keep, rest); !finished && done)
       done = std::move(finished);
   more = more || due.rows() == kRowsAtOnce;
@@ -231,12 +262,12 @@ Result<void> Files::finish(Bytes hash, std::chrono::seconds keep, std::chrono::s
   return refused ? tl::unexpected(*refused) : Result<void>{};
 }
 
-Result<void> Files::find_superfluous() {
+Result<void> Files::find_superfluous(const std::function<bool()>& cancelled) {
   if (!is_open()) return {};
   const bool owns = STRATA_TRY(owns_files());
   if (!owns) return {};
   const auto oldest = std::chrono::system_clock::now() - kSuperfluousAfter;
-  return each_without_row([&](const std::vector<StoredFile>& batch) {
+  return each_without_row(cancelled, [&](const std::vector<StoredFile>& batch) {
     return pool_.write([&](PgConnection& connection) -> Result<void> {
       PgArray hashes(oid::kBytea), sizes(oid::kInt8);
       for (const StoredFile& file : batch) {
@@ -258,6 +289,7 @@ Result<void> Files::find_superfluous() {
 }
 
 Result<void> Files::each_without_row(
+    const std::function<bool()>& cancelled,
     const std::function<Result<void>(const std::vector<StoredFile>&)>& visit) {
   std::vector<StoredFile> batch;
   const auto flush = [&]() -> Result<void> {
@@ -277,6 +309,7 @@ Result<void> Files::each_without_row(
     return {};
   };
   STRATA_TRY(blobs_.files()->list([&](const StoredFile& file) -> Result<void> {
+    if (cancelled && cancelled()) return cancelled_problem();
     batch.push_back(file);
     return batch.size() < kRowsAtOnce ? Result<void>{} : flush();
   }));
@@ -329,13 +362,20 @@ Result<Files::Moved> Files::move(Direction direction, Progress& progress) {
                     "files adopt` first.",
                 "--files");
   Moved moved;
+  std::vector<Sha256> damaged;
   STRATA_TRY(each_row(into, progress, "Moving", [&](const Row& row) -> Result<void> {
     if (!into && static_cast<std::uint64_t>(row.bytes) > blobs_.files()->max_bytes()) {
       ++moved.skipped;
       return {};
     }
-    const bool done = STRATA_TRY(move_one(row, into, progress));
-    if (!done) {
+    const auto done = move_one(row, into, progress);
+    // One file that is lost does not keep the others. A file may be deleted meanwhile.
+    if (!done && done.error().code == ErrorCode::damaged) {
+      damaged.push_back(row.hash);
+      return {};
+    }
+    if (!done && done.error().code != ErrorCode::not_found) return tl::unexpected(done.error());
+    if (!done || !*done) {
       ++moved.skipped;
       return {};
     }
@@ -343,7 +383,7 @@ Result<Files::Moved> Files::move(Direction direction, Progress& progress) {
     moved.bytes += row.bytes;
     return {};
   }));
-  return moved;
+  return damaged.empty() ? Result<Moved>(moved) : not_moved(damaged);
 }
 
 Result<bool> Files::move_one(const Row& row, bool into, const Progress& progress) {
@@ -355,8 +395,7 @@ Result<bool> Files::move_one(const Row& row, bool into, const Progress& progress
     memory = STRATA_TRY(blobs_.read(row.hash));
     content = content_of(Bytes(memory));
   } else {
-    file.emplace(std::filesystem::temp_directory_path() /
-                 ("strata-move-" + to_string(random_uuid())));
+    STRATA_TRY(make_private_file(file.emplace()));
     std::ofstream out(file->path, std::ios::binary);
     STRATA_TRY(blobs_.stream(row.hash, 0, static_cast<std::uint64_t>(row.bytes), [&](Bytes piece) {
       out.write(reinterpret_cast<const char*>(piece.data()),
@@ -429,11 +468,12 @@ Result<Files::Checked> Files::check(const std::function<void(const FileProblem&)
   progress.begin_stage(0.95, 1);
   progress.report(0, "Listing the files");
   const auto oldest = std::chrono::system_clock::now() - kSuperfluousAfter;
-  STRATA_TRY(each_without_row([&](const std::vector<StoredFile>& files) -> Result<void> {
+  const auto cancelled = [&progress] { return progress.cancelled(); };
+  STRATA_TRY(each_without_row(cancelled, [&](const std::vector<StoredFile>& files) -> Result<void> {
     for (const StoredFile& file : files)
       if (file.changed <= oldest)
         found({FileProblem::Kind::superfluous, file_name_of(file.hash), file.bytes, {}});
-    return progress.cancelled() ? Result<void>(cancelled_problem()) : Result<void>{};
+    return {};
   }));
   return checked;
 }

@@ -70,11 +70,13 @@ class Files {
   FileFaults faults() const;
 
   // Deletes files that nothing has used for `keep`. Works in small steps, and returns true if there
-  // may be more to do. Does nothing if this database does not own the files.
-  Result<bool> sweep(std::chrono::seconds keep, std::chrono::seconds rest = kRest);
+  // may be more to do. Does nothing if this database does not own the files. Ends soon after
+  // `cancelled`. If some files cannot be deleted, deletes the others, and returns the first error.
+  Result<bool> sweep(std::chrono::seconds keep, std::chrono::seconds rest = kRest,
+                     const std::function<bool()>& cancelled = {});
   // Finds files without a row that are older than a day. The sweep then deletes them after `keep`.
   // Such files remain if an older database is restored, and a restore of a newer backup needs them.
-  Result<void> find_superfluous();
+  Result<void> find_superfluous(const std::function<bool()>& cancelled = {});
 
   enum class Direction { out_of_database, into_database };
   struct Moved {
@@ -82,7 +84,7 @@ class Files {
     std::int64_t skipped = 0;  // too large for the file store, or being removed
   };
   // Moves content, one file after the other, and can be repeated after an interruption. The server
-  // can continue to run.
+  // can continue to run. If files are missing or changed, moves the others, and returns `damaged`.
   Result<Moved> move(Direction direction, Progress& progress);
 
   struct Checked {
@@ -97,9 +99,11 @@ class Files {
     Sha256 hash{};
     std::int64_t bytes = 0;
   };
-  Result<void> remove_marked(std::chrono::seconds keep, std::chrono::seconds rest, bool& more);
+  Result<void> remove_marked(std::chrono::seconds keep, std::chrono::seconds rest,
+                             const std::function<bool()>& cancelled, bool& more);
   Result<void> finish(Bytes hash, std::chrono::seconds keep, std::chrono::seconds rest);
   Result<void> each_without_row(
+      const std::function<bool()>& cancelled,
       const std::function<Result<void>(const std::vector<StoredFile>&)>& visit);
   Result<std::vector<Row>> rows_after(Bytes last, bool is_outside);
   // Calls `visit` for each content in use, in the order of the hashes.

@@ -47,6 +47,7 @@ class FaultyFiles : public FileStore {
     return files_->read(hash, begin, size);
   }
   Result<bool> remove(const Sha256& hash) override {
+    if (hash == locked) return fail(ErrorCode::unavailable, "Fault", "Nobody may delete it.");
     if (fault) return fail(*fault, "Fault", "A fault of the test.");
     return files_->remove(hash);
   }
@@ -58,6 +59,7 @@ class FaultyFiles : public FileStore {
   Result<void> write_mark(const std::string& text) override { return files_->write_mark(text); }
 
   std::optional<ErrorCode> fault;
+  std::optional<Sha256> locked;  // cannot be deleted
   std::function<void()> on_put;
   std::uint64_t limit = UINT64_MAX;
   std::atomic<int> puts = 0;
@@ -292,6 +294,54 @@ TEST_F(FilesOutside, a_deletion_that_failed_may_still_happen_within_the_hour) {
   for (const auto& content : {geometry_, source_, image_}) fs::remove(file_of(content));
   ASSERT_TRUE(store_->files().sweep(seconds(0), std::chrono::hours(1)));
   EXPECT_EQ(count("blobs WHERE removing IS NOT NULL"), 3) << "new content must not rely on a file";
+}
+
+TEST_F(FilesOutside, a_file_that_cannot_be_deleted_does_not_keep_the_others) {
+  const Model model = create("bust");
+  ASSERT_TRUE(store_->models().remove(model.id));
+  faulty_->locked = std::min({sha256(geometry_), sha256(source_), sha256(image_)});
+  EXPECT_FALSE(store_->files().sweep(seconds(0), seconds(0))) << "the sweep reports it";
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(FilesOutside, a_sweep_ends_when_the_server_stops) {
+  const Model model = create("bust");
+  ASSERT_TRUE(store_->models().remove(model.id));
+  const auto stopping = [] { return true; };
+  ASSERT_TRUE(store_->files().sweep(seconds(0), seconds(0), stopping));
+  EXPECT_EQ(files(), 3u);
+  EXPECT_EQ(store_->files().find_superfluous(stopping).error().code, ErrorCode::cancelled);
+}
+
+TEST_F(FilesOutside, the_list_never_finds_the_file_of_a_running_upload) {
+  // An upload that has taken longer than a day.
+  faulty_->on_put = [&] {
+    for (const auto& content : {geometry_, source_, image_})
+      if (fs::exists(file_of(content)))
+        fs::last_write_time(file_of(content),
+                            fs::file_time_type::clock::now() - std::chrono::hours(48));
+    EXPECT_TRUE(store_->files().find_superfluous());
+    EXPECT_TRUE(store_->files().sweep(std::chrono::hours(24), seconds(0)));
+  };
+  const Model model = create("bust");
+  faulty_->on_put = {};
+  EXPECT_EQ(files(), 3u);
+  EXPECT_EQ(count("blobs WHERE is_outside AND removing IS NULL"), 3);
+  expect_whole(*store_, model);
+}
+
+TEST_F(FilesOutside, a_lost_file_does_not_keep_the_others_from_moving) {
+  const Model model = create("bust");
+  fs::remove(file_of(source_));
+  std::fstream(file_of(image_), std::ios::binary | std::ios::in | std::ios::out) << "?";
+  Progress progress;
+  const auto moved = store_->files().move(Direction::into_database, progress);
+  ASSERT_FALSE(moved);
+  EXPECT_EQ(moved.error().code, ErrorCode::damaged);
+  for (const auto& lost : {source_, image_})
+    EXPECT_THAT(moved.error().detail, ::testing::HasSubstr(file_name_of(sha256(lost))));
+  EXPECT_EQ(count("blobs WHERE NOT is_outside"), 1);
+  EXPECT_TRUE(store_->models().geometry(model.id).value() == geometry_);
 }
 
 TEST_F(FilesOutside, a_backup_can_rely_on_files_that_were_moved_into_the_database) {
