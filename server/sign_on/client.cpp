@@ -8,8 +8,8 @@
 #include "core/text/base64.h"
 #include "core/text/bytes.h"
 #include "core/text/percent.h"
+#include "core/text/url.h"
 #include "sign_on/id_token.h"
-#include "sign_on/url.h"
 
 namespace strata::sign_on {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text/ascii.h"
-#include "sign_on/url.h"
+#include "core/text/url.h"
 
 namespace strata::sign_on {
 namespace {

@@ -1,3 +1,4 @@
+#include "core/text/url.h"
 #include "sign_on/fetch.h"
 
 #include <curl/curl.h>
@@ -5,7 +6,6 @@
 #include <memory>
 #include <mutex>
 
-#include "sign_on/url.h"
 
 namespace strata::sign_on {
 namespace {

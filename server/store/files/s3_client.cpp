@@ -8,13 +8,13 @@
 
 #include "core/progress.h"
 #include "core/text/hex.h"
+#include "core/text/url.h"
 
 namespace strata::store {
 namespace {
 
-constexpr long kS3Connect_ms = 5000;
-constexpr long kSilent_s = 30;  // without a byte
-constexpr int kTries = 3;
+constexpr int kTries = 3, kTriesOfRead = 2;
+constexpr std::size_t kBytesPerMs = 64;  // slower transfers end
 constexpr std::chrono::milliseconds kFirstPause{200};
 constexpr std::size_t kMaxIdle = 8;
 
@@ -22,6 +22,8 @@ constexpr std::size_t kMaxIdle = 8;
 struct Transfer {
   Bytes memory;  // not yet sent
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file{nullptr, &std::fclose};
+  std::uint64_t left_in_file = 0;
+  bool has_changed = false;  // the file is shorter than it was, or can no longer be read
   const std::function<bool()>* cancelled = nullptr;
   std::vector<std::uint8_t> reply;
   std::size_t max_reply = 0;
@@ -30,7 +32,15 @@ struct Transfer {
 
 std::size_t read_body(char* to, std::size_t size, std::size_t count, void* context) {
   auto& transfer = *static_cast<Transfer*>(context);
-  if (transfer.file) return std::fread(to, 1, size * count, transfer.file.get());
+  if (transfer.file) {
+    const auto wanted =
+        static_cast<std::size_t>(std::min<std::uint64_t>(size * count, transfer.left_in_file));
+    const std::size_t read = std::fread(to, 1, wanted, transfer.file.get());
+    transfer.left_in_file -= read;
+    // curl would wait for the rest of the file.
+    transfer.has_changed = read < wanted;
+    return transfer.has_changed ? CURL_READFUNC_ABORT : read;
+  }
   const std::size_t sent = std::min(size * count, transfer.memory.size());
   std::copy_n(transfer.memory.begin(), sent, to);
   transfer.memory = transfer.memory.subspan(sent);
@@ -57,11 +67,17 @@ tl::unexpected<Error> no_answer(const std::string& url, const std::string& why) 
               "--files");
 }
 
-bool may_pass(long status) { return status == 429 || status >= 500; }
+bool may_pass(const S3Reply& reply) {
+  constexpr std::string_view kTimeout = "<Code>RequestTimeout</Code>";
+  return reply.status == 408 || reply.status == 429 || reply.status >= 500 ||
+         (reply.status == 400 && std::search(reply.body.begin(), reply.body.end(), kTimeout.begin(),
+                                             kTimeout.end()) != reply.body.end());
+}
 
 }  // namespace
 
-S3Client::S3Client(S3Bucket bucket) : bucket_(std::move(bucket)) {
+S3Client::S3Client(S3Bucket bucket, S3Patience patience)
+    : bucket_(std::move(bucket)), patience_(patience) {
   static std::once_flag initialized;
   std::call_once(initialized, [] { curl_global_init(CURL_GLOBAL_DEFAULT); });
 }
@@ -91,9 +107,13 @@ void S3Client::set_up(CURL* handle, const S3Call& call) {
   curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(handle, CURLOPT_FOLLOWLOCATION, 0L);
   curl_easy_setopt(handle, CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT_MS, kS3Connect_ms);
+  curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT_MS, patience_.connect_ms);
   curl_easy_setopt(handle, CURLOPT_LOW_SPEED_LIMIT, 1L);
-  curl_easy_setopt(handle, CURLOPT_LOW_SPEED_TIME, kSilent_s);
+  curl_easy_setopt(handle, CURLOPT_LOW_SPEED_TIME, patience_.silent_s);
+  const std::size_t most_bytes = call.body ? std::size_t(call.body->bytes) : call.max_reply;
+  curl_easy_setopt(handle, CURLOPT_TIMEOUT_MS,
+                   patience_.whole_ms + static_cast<long>(most_bytes / kBytesPerMs));
+  if (is_loopback_url(bucket_.url)) curl_easy_setopt(handle, CURLOPT_PROXY, "");
   curl_easy_setopt(handle, CURLOPT_USERNAME, bucket_.access_key.c_str());
   curl_easy_setopt(handle, CURLOPT_PASSWORD, bucket_.secret_key.c_str());
   curl_easy_setopt(handle, CURLOPT_AWS_SIGV4, ("aws:amz:" + bucket_.region + ":s3").c_str());
@@ -120,6 +140,7 @@ Result<S3Reply> S3Client::send_once(const S3Call& call, const std::function<bool
       if (!transfer.file)
         return fail(ErrorCode::internal, "File not readable",
                     "Cannot open " + call.body->file.string() + ".", "source_files");
+      transfer.left_in_file = static_cast<std::uint64_t>(call.body->bytes);
     }
     curl_easy_setopt(handle.get(), CURLOPT_UPLOAD, 1L);
     curl_easy_setopt(handle.get(), CURLOPT_READFUNCTION, &read_body);
@@ -139,6 +160,9 @@ Result<S3Reply> S3Client::send_once(const S3Call& call, const std::function<bool
   curl_easy_setopt(handle.get(), CURLOPT_XFERINFODATA, &transfer);
   curl_easy_setopt(handle.get(), CURLOPT_XFERINFOFUNCTION, &watch_transfer);
   const CURLcode code = curl_easy_perform(handle.get());
+  if (transfer.has_changed)
+    return fail(ErrorCode::conflict, "File changed",
+                "The file changed while it was sent. Send it again.", "source_files");
   if (code == CURLE_ABORTED_BY_CALLBACK) return cancelled_problem();
   if (transfer.is_too_long) return no_answer(bucket_.url, "its reply is too long");
   if (code != CURLE_OK) return no_answer(bucket_.url, curl_easy_strerror(code));
@@ -149,12 +173,33 @@ Result<S3Reply> S3Client::send_once(const S3Call& call, const std::function<bool
   return reply;
 }
 
+int S3Client::tries_now(const S3Call& call) {
+  const bool is_read = call.method == S3Call::Method::get || call.method == S3Call::Method::head;
+  const std::lock_guard lock(mutex_);
+  if (!down_until_) return is_read ? kTriesOfRead : kTries;
+  const auto now = std::chrono::steady_clock::now();
+  if (now < *down_until_) return 0;
+  down_until_ = now + patience_.down;  // others do not try at the same time
+  return 1;
+}
+
+void S3Client::note_answer(bool has_answered) {
+  const std::lock_guard lock(mutex_);
+  if (has_answered)
+    down_until_.reset();
+  else
+    down_until_ = std::chrono::steady_clock::now() + patience_.down;
+}
+
 Result<S3Reply> S3Client::send(const S3Call& call, const std::function<bool()>& cancelled) {
+  const int tries = tries_now(call);
+  if (tries == 0) return no_answer(bucket_.url, "it did not answer a moment ago");
   auto pause = kFirstPause;
-  for (int tries_left = kTries - 1;; --tries_left) {
+  for (int tries_left = tries - 1;; --tries_left) {
     auto reply = send_once(call, cancelled);
-    const bool again =
-        reply ? may_pass(reply->status) : reply.error().code == ErrorCode::unavailable;
+    const bool is_silent = !reply && reply.error().code == ErrorCode::unavailable;
+    if (reply || (is_silent && tries_left == 0)) note_answer(reply.has_value());
+    const bool again = reply ? may_pass(*reply) : is_silent;
     if (!again) return reply;
     if (tries_left == 0)
       return reply ? no_answer(bucket_.url,

@@ -2,9 +2,11 @@
 
 #include <curl/curl.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,14 +40,24 @@ struct S3Reply {
   std::vector<std::uint8_t> body;
 };
 
-// Sends requests to a bucket, signed by libcurl (AWS Signature Version 4). Repeats a request up to
-// three times after temporary failures. A request ends when no byte was sent or received for 30
-// seconds. Thread-safe.
+// How long the client waits. Tests use shorter times.
+struct S3Patience {
+  long connect_ms = 5000;
+  long silent_s = 30;             // without a byte
+  long whole_ms = 30'000;         // for a request, and a millisecond more for each 64 bytes
+  std::chrono::seconds down{10};  // between two requests to a server that does not answer
+};
+
+// Sends requests to a bucket, signed by libcurl (AWS Signature Version 4). Repeats a request after
+// failures that may pass: sends a change up to three times, and a read, which somebody waits for,
+// twice. If the server does not answer, later requests fail at once, except one each `down`, so
+// they do not occupy all threads of the server. Thread-safe.
 class S3Client {
  public:
-  explicit S3Client(S3Bucket bucket);
-  // Also returns replies with an error status such as 404. Returns `unavailable` if the server
-  // cannot be reached, or replies with the status 429 or 5xx.
+  explicit S3Client(S3Bucket bucket, S3Patience patience = {});
+  // Returns also replies that are errors, such as 404. Returns `unavailable` if the server cannot
+  // be reached, or answers with an error of its own. Returns `conflict` if the file of the body
+  // becomes shorter.
   Result<S3Reply> send(const S3Call& call, const std::function<bool()>& cancelled = {});
 
  private:
@@ -56,13 +68,17 @@ class S3Client {
   using Handle = std::unique_ptr<CURL, CloseHandle>;
   using Headers = std::unique_ptr<curl_slist, CloseHandle>;
 
+  int tries_now(const S3Call& call);  // 0: the server is down
+  void note_answer(bool has_answered);
   Result<S3Reply> send_once(const S3Call& call, const std::function<bool()>& cancelled);
   void set_up(CURL* handle, const S3Call& call);
   Handle take_handle();
   void keep_handle(Handle handle);
 
   const S3Bucket bucket_;
+  const S3Patience patience_;
   std::mutex mutex_;
+  std::optional<std::chrono::steady_clock::time_point> down_until_;
   std::vector<Handle> idle_;  // with open connections
 };
 

@@ -7,6 +7,7 @@
 #include "core/text/percent.h"
 #include "core/text/slug.h"
 #include "core/text/timestamp.h"
+#include "core/text/url.h"
 
 namespace strata::store {
 namespace {
@@ -34,13 +35,7 @@ bool is_plain(std::string_view text, std::string_view also) {
 
 // Returns whether the address is http or https to this machine, or https, without a path.
 bool is_safe_endpoint(std::string_view url) {
-  const bool https = url.starts_with("https://");
-  if (!https && !url.starts_with("http://")) return false;
-  const std::string_view rest = url.substr(https ? 8 : 7);
-  if (rest.empty() || !is_plain(rest, ".-:[]")) return false;
-  const auto end = rest.starts_with('[') ? rest.find(']') + 1 : rest.find(':');
-  const std::string_view host = rest.substr(0, end);
-  return https || host == "127.0.0.1" || host == "localhost" || host == "[::1]";
+  return is_safe_url(url) && url.find_first_of("/?", url.find("//") + 2) == std::string_view::npos;
 }
 
 // Returns the text between the tags of the first element `name` at or after `at`, and sets `at` to
@@ -164,9 +159,9 @@ Result<S3Page> read_s3_page(std::string_view xml, std::string_view prefix) {
 }
 
 Result<std::unique_ptr<FileStore>> S3Files::open(const FilesPlace& place,
-                                                 const S3Environment& environment) {
+                                                 const S3Environment& environment, int page_size) {
   auto there = STRATA_TRY(s3_place(place, environment));
-  return std::unique_ptr<FileStore>(new S3Files(place.place, std::move(there)));
+  return std::unique_ptr<FileStore>(new S3Files(place.place, std::move(there), page_size));
 }
 
 Result<void> S3Files::put_object(const std::string& key, const Content& content,
@@ -196,7 +191,9 @@ Result<std::vector<std::uint8_t>> S3Files::read(const Sha256& hash, std::uint64_
   if (reply.status == 404 && element(text_of_reply(reply), "Code") == "NoSuchKey")
     return fail(ErrorCode::not_found, "File missing",
                 "There is no file " + file_name_of(hash) + " in " + place_ + ".");
-  if (reply.status != 206) return refusal(place_, reply);
+  // Some servers send the whole file without a range if it is not longer.
+  const bool has_bytes = reply.status == 206 || (reply.status == 200 && begin == 0);
+  if (!has_bytes) return refusal(place_, reply);
   reply.body.resize(std::min(reply.body.size(), size));
   return std::move(reply.body);
 }
@@ -217,7 +214,8 @@ Result<bool> S3Files::remove(const Sha256& hash) {
 
 Result<void> S3Files::list(const std::function<Result<void>(const StoredFile&)>& visit) {
   for (std::string after;;) {
-    std::string query = "list-type=2&max-keys=1000&prefix=" + percent_encode(prefix_);
+    std::string query =
+        "list-type=2&max-keys=" + std::to_string(page_size_) + "&prefix=" + percent_encode(prefix_);
     if (!after.empty()) query += "&start-after=" + percent_encode(after);
     const auto reply = STRATA_TRY(client_.send({.query = query, .max_reply = kMaxPage}));
     if (reply.status != 200) return refusal(place_, reply);

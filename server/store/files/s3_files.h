@@ -34,8 +34,10 @@ Result<S3Page> read_s3_page(std::string_view xml, std::string_view prefix);
 // request, which succeeds as a whole or not at all.
 class S3Files : public FileStore {
  public:
+  // `page_size` is the number of names in one reply to `list`.
   static Result<std::unique_ptr<FileStore>> open(const FilesPlace& place,
-                                                 const S3Environment& environment);
+                                                 const S3Environment& environment,
+                                                 int page_size = 1000);
 
   std::string place() const override { return place_; }
   std::uint64_t max_bytes() const override { return std::uint64_t{5} << 30; }  // limit of S3
@@ -49,14 +51,18 @@ class S3Files : public FileStore {
   Result<void> write_mark(const std::string& text) override;
 
  private:
-  S3Files(std::string place, S3Place there)
-      : place_(std::move(place)), prefix_(std::move(there.prefix)), client_(there.bucket) {}
+  S3Files(std::string place, S3Place there, int page_size)
+      : place_(std::move(place)),
+        prefix_(std::move(there.prefix)),
+        page_size_(page_size),
+        client_(there.bucket) {}
   std::string key_of(const Sha256& hash) const { return prefix_ + file_name_of(hash); }
   Result<void> put_object(const std::string& key, const Content& content,
                           const std::function<bool()>& cancelled);
 
   const std::string place_;
   const std::string prefix_;
+  const int page_size_;
   S3Client client_;
 };
 

@@ -135,6 +135,10 @@ TEST_P(FileStoreContract, content_that_changes_while_it_is_sent_is_refused) {
   const auto put = files_->put(content, {});
   ASSERT_FALSE(put);
   EXPECT_EQ(put.error().code, ErrorCode::conflict) << put.error().detail;
+  fs::resize_file(file, 100);
+  const auto shorter = files_->put(content, {});
+  ASSERT_FALSE(shorter);
+  EXPECT_EQ(shorter.error().code, ErrorCode::conflict) << shorter.error().detail;
   EXPECT_EQ(files_->read(content.hash, 0, 1).error().code, ErrorCode::not_found);
   EXPECT_TRUE(names().empty());
 }
@@ -292,6 +296,26 @@ TEST(S3OfFiles, a_server_that_does_not_answer_is_unavailable_and_no_error_has_th
     for (const char* secret : {"an-access-key", "the-secret-key", "the-session-token"})
       EXPECT_EQ(error.detail.find(secret), std::string::npos) << error.detail;
   }
+}
+
+TEST(S3OfFiles, a_list_has_all_pages) {
+  const test::S3Server* server = test::shared_s3();
+  if (!server) GTEST_SKIP() << "SKIPPED: Swift is not installed";
+  const auto files =
+      S3Files::open({"s3://strata/pages", server->endpoint}, s3_environment(), 2).value();
+  std::set<std::string> expected, found;
+  for (unsigned i = 0; i < 5; ++i) {
+    const auto bytes = pattern(10, i);
+    const Content content = content_of(Bytes(bytes));
+    ASSERT_TRUE(files->put(content, {}));
+    expected.insert(file_name_of(content.hash));
+  }
+  const auto listed = files->list([&](const StoredFile& file) -> Result<void> {
+    EXPECT_TRUE(found.insert(file_name_of(file.hash)).second);
+    return {};
+  });
+  EXPECT_TRUE(listed) << listed.error().detail;
+  EXPECT_EQ(found, expected);
 }
 
 TEST(S3OfFiles, wrong_keys_and_buckets_are_refused_and_lose_nothing) {

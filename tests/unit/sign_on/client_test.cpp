@@ -7,7 +7,7 @@
 
 #include "core/digest.h"
 #include "core/text/base64.h"
-#include "sign_on/url.h"
+#include "core/text/url.h"
 #include "support/signed_tokens.h"
 
 namespace strata::sign_on {

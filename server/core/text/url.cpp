@@ -1,9 +1,9 @@
-#include "sign_on/url.h"
+#include "core/text/url.h"
 
 #include <algorithm>
 #include <optional>
 
-namespace strata::sign_on {
+namespace strata {
 namespace {
 
 constexpr std::string_view kHttps = "https://", kHttp = "http://";
@@ -35,4 +35,4 @@ bool is_safe_url(std::string_view url) {
   return host_of(url) && (url.starts_with(kHttps) || is_loopback_url(url));
 }
 
-}  // namespace strata::sign_on
+}  // namespace strata
