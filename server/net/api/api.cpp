@@ -224,6 +224,7 @@ std::unique_ptr<app::NodeListener> Api::listen_to_nodes() {
 }
 
 void Api::stop_workers() {
+  store_.files().stop_uploads();
   if (node_listener_) node_listener_->stop();
   recomputer_.stop();
   demo_annotators_.stop();

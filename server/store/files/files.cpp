@@ -174,6 +174,8 @@ Result<FilesFacts> Files::facts() {
   });
 }
 
+void Files::stop_uploads() { blobs_.stop_uploads(); }
+
 FileFaults Files::faults() const {
   const Blobs::Faults& faults = blobs_.faults();
   return {faults.missing, faults.changed, faults.unreachable};

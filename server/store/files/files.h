@@ -68,6 +68,7 @@ class Files {
 
   Result<FilesFacts> facts();
   FileFaults faults() const;
+  void stop_uploads();  // ends all uploads soon, because the server stops
 
   // Deletes files that nothing has used for `keep`. Works in small steps, and returns true if there
   // may be more to do. Does nothing if this database does not own the files. Ends soon after

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/log.h"
+#include "core/progress.h"
 #include "core/text/hex.h"
 #include "store/files/files_mark.h"
 #include "store/pg/sql.h"
@@ -15,6 +16,7 @@ constexpr std::uint64_t kWindowBytes = 8 * kChunkBytes;
 constexpr std::size_t kSumBytes = Sha256{}.size();
 // A blob may move between the database and the file store while it is read.
 constexpr int kMaxMoves = 10;
+constexpr std::chrono::minutes kBetweenLogLines{1};
 
 // The sweep may have deleted the file of a transaction that begins long after its upload. It
 // keeps each file for at least a day.
@@ -61,15 +63,37 @@ Result<bool> Blobs::owns_files() {
   return mark && mark->owner == owner;
 }
 
+// Visitors of the site can cause such errors, and must not see names of folders, buckets and
+// accounts.
+Error Blobs::without_names(Error error) {
+  const bool is_of_files = error.field == "--files";
+  if (!is_of_files) return error;
+  {
+    const std::lock_guard lock(log_mutex_);
+    const auto now = std::chrono::steady_clock::now();
+    if (now >= log_after_) {
+      log_after_ = now + kBetweenLogLines;
+      log::error("files outside the database: " + error.detail);
+    }
+  }
+  error.detail = error.code == ErrorCode::storage_full
+                     ? "The file store is full. Ask an administrator to free some space."
+                     : "The file store does not respond. Ask an administrator.";
+  error.field.clear();
+  return error;
+}
+
 Result<void> Blobs::upload(std::span<Content> contents, const std::function<bool()>& cancelled) {
   if (!files_ || contents.empty()) return {};
   // Otherwise the owner of the files would find a file that it does not know, and delete it.
-  const bool owns = STRATA_TRY(owns_files());
-  if (!owns) return {};
+  const auto owns = owns_files();
+  if (!owns) return tl::unexpected(without_names(owns.error()));
+  if (!*owns) return {};
+  const auto ending = [&] { return is_stopping_ || (cancelled && cancelled()); };
   for (Content& content : contents) {
     if (content.uploaded || static_cast<std::uint64_t>(content.bytes) > files_->max_bytes())
       continue;
-    const auto sums = STRATA_TRY(chunk_sums_of(content, cancelled));
+    const auto sums = STRATA_TRY(chunk_sums_of(content, ending));
     const auto now = std::chrono::steady_clock::now();
     const auto reserved = STRATA_TRY(pool_.write([&](PgConnection& connection) {
       return connection.query(
@@ -83,8 +107,9 @@ Result<void> Blobs::upload(std::span<Content> contents, const std::function<bool
     }));
     // Otherwise the content is in the database, or a file is being removed.
     if (reserved.affected() == 0) continue;
-    // Upload even if the file exists, because it may be damaged or unfinished.
-    STRATA_TRY(files_->put(content, cancelled));
+    // Also if the file exists: it may be damaged or unfinished.
+    if (const auto stored = files_->put(content, ending); !stored)
+      return tl::unexpected(without_names(stored.error()));
     content.uploaded = now;
   }
   return {};
@@ -156,9 +181,9 @@ Result<void> Blobs::stream(Bytes sha256, std::uint64_t begin, std::uint64_t end,
     ++faults_.missing;
     const std::string name = file_name_of(sha256_of(sha256));
     log::error("the file " + name + " is missing in " + files_->place());
-    return fail(ErrorCode::damaged, "File missing",
-                "The file " + name + " is missing in " + files_->place() +
-                    ". Copy it from a backup, or upload the same file again.");
+    return fail(
+        ErrorCode::damaged, "File missing",
+        "The file " + name + " is missing. Copy it from a backup, or upload the same file again.");
   }
 }
 
@@ -197,7 +222,7 @@ Result<bool> Blobs::stream_file(Bytes sha256, const Place& place, std::uint64_t&
     if (!window && window.error().code == ErrorCode::not_found) return false;
     if (!window) {
       ++faults_.unreachable;
-      return tl::unexpected(window.error());
+      return tl::unexpected(without_names(window.error()));
     }
     for (std::size_t offset = 0; offset < size && at < end; offset += kChunkBytes) {
       const std::size_t wanted = std::min(size - offset, kChunkBytes);
@@ -211,7 +236,7 @@ Result<bool> Blobs::stream_file(Bytes sha256, const Place& place, std::uint64_t&
         const std::string name = file_name_of(hash);
         log::error("the file " + name + " in " + files_->place() + " has changed");
         return fail(ErrorCode::damaged, "File changed",
-                    "The content of the file " + name + " in " + files_->place() +
+                    "The content of the file " + name +
                         " has changed since it was stored, so the server does not send it. Copy it "
                         "from a backup, or upload the same file again.");
       }

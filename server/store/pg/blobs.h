@@ -1,7 +1,9 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 
@@ -25,9 +27,12 @@ class Blobs {
   Result<bool> owns_files();                         // see Files
 
   // Stores the contents in the file store, if there is one and this database owns it. Call it
-  // before the transaction that needs them, because an upload may take long.
+  // before the transaction that needs them, because an upload may take long. The errors of the file
+  // store are logged, and returned without the names of folders and accounts.
   Result<void> upload(std::span<Content> contents, const std::function<bool()>& cancelled);
   Result<void> upload(Content& content) { return upload({&content, 1}, {}); }
+  // Ends all uploads soon, because the server stops.
+  void stop_uploads() { is_stopping_ = true; }
 
   // Returns the whole content.
   Result<std::vector<std::uint8_t>> read(Bytes sha256);
@@ -53,8 +58,13 @@ class Blobs {
   Result<bool> stream_file(Bytes sha256, const Place& place, std::uint64_t& at, std::uint64_t end,
                            const std::function<bool(Bytes)>& sink);
 
+  Error without_names(Error error);
+
   Pool& pool_;
   std::unique_ptr<FileStore> files_;
+  std::atomic<bool> is_stopping_ = false;
+  std::mutex log_mutex_;
+  std::chrono::steady_clock::time_point log_after_;
   Faults faults_;
 };
 

@@ -428,6 +428,31 @@ TEST_F(FilesOutside, a_changed_file_is_not_passed_on_and_a_new_upload_repairs_it
   expect_whole(*store_, model);
 }
 
+TEST_F(FilesOutside, errors_do_not_name_the_folder) {
+  const Model model = create("bust");
+  fs::rename(place(), folder_.path() / "elsewhere");
+  const auto read = store_->models().geometry(model.id);
+  const auto uploaded = create(*store_, "again");
+  fs::create_directory(place());
+  const auto written = create(*store_, "again");
+  for (const auto* error : {&read.error(), &uploaded.error(), &written.error()}) {
+    EXPECT_EQ(error->code, ErrorCode::unavailable);
+    EXPECT_EQ(error->detail.find(folder_.path().string()), std::string::npos) << error->detail;
+  }
+  fs::remove(place());
+  fs::rename(folder_.path() / "elsewhere", place());
+  fs::remove(file_of(geometry_));
+  const auto missing = store_->models().geometry(model.id);
+  EXPECT_EQ(missing.error().code, ErrorCode::damaged);
+  EXPECT_EQ(missing.error().detail.find(folder_.path().string()), std::string::npos);
+}
+
+TEST_F(FilesOutside, an_upload_ends_when_the_server_stops) {
+  store_->files().stop_uploads();
+  EXPECT_EQ(create(*store_, "bust").error().code, ErrorCode::cancelled);
+  EXPECT_EQ(files(), 0u);
+}
+
 TEST_F(FilesOutside, a_shortened_or_missing_file_is_an_error) {
   const Model model = create("bust");
   fs::resize_file(file_of(geometry_), geometry_.size() - 1);
