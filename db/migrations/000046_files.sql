@@ -7,8 +7,8 @@ CREATE TABLE file_store (
   id uuid NOT NULL,
   -- for people: the folder, or s3://BUCKET/PREFIX
   place text NOT NULL CHECK (char_length(place) BETWEEN 1 AND 4096),
-  -- The database that may write and delete files: the identifier of its cluster, its oid and a random part. The file strata-files.json has the same
-  -- text. A restored copy of the database has another identifier, and changes nothing that the original needs.
+  -- The database that may write and delete files: the identifier of its cluster, its oid and a random text, which is also in the file
+  -- strata-files.json. A restored copy of the database has another identifier, and changes nothing that the original needs.
   owner text NOT NULL CHECK (char_length(owner) <= 100)
 );
 

@@ -21,6 +21,7 @@
 #include "store/cluster/cluster.h"
 #include "store/cluster/cluster_process.h"
 #include "store/cluster/scratch_folder.h"
+#include "store/files/files_mark.h"
 #include "store/pg/pg.h"
 
 namespace strata::store {
@@ -131,6 +132,18 @@ class UpgradeLock {
   int fd_;
 };
 
+// Returns whether the database owns the files outside (store/files/files.h). A database of an older
+// version has no table of files.
+Result<bool> owns_files(const std::string& dsn) {
+  auto connection = STRATA_TRY(PgConnection::connect(dsn));
+  const auto table =
+      STRATA_TRY(connection.query("SELECT to_regclass('public.file_store') IS NOT NULL"));
+  if (!table.boolean(0, 0)) return false;
+  const auto row = STRATA_TRY(connection.query(
+      sql("SELECT 1 FROM public.file_store WHERE starts_with(owner, ", kDatabaseId, " || '/')")));
+  return row.rows() > 0;
+}
+
 // --- one upgrade
 
 class Upgrade {
@@ -218,6 +231,7 @@ class Upgrade {
 
   Result<BackupFacts> make_by_dump(const std::string& dsn) {
     const fs::path dump = plan_.work() / "dump";
+    owns_files_ = STRATA_TRY(owns_files(dsn));
     const auto facts = STRATA_TRY(write_backup(dsn, dump, progress_));
     if (old_) STRATA_TRY(old_->stop());
     STRATA_TRY(make_empty_cluster(plan_.to >= kChecksumsByDefault));
@@ -230,6 +244,7 @@ class Upgrade {
   Result<BackupFacts> make_by_upgrade() {
     progress_.begin_stage(0.2, 0.45);
     const auto facts = STRATA_TRY(read_facts(old_->dsn(), progress_));
+    owns_files_ = STRATA_TRY(owns_files(old_->dsn()));
     const bool checksums = STRATA_TRY(old_has_checksums());
     STRATA_TRY(old_->stop());
     progress_.begin_stage(0.45, 0.7);
@@ -298,12 +313,17 @@ class Upgrade {
     return {};
   }
 
-  // Neither pg_upgrade nor pg_restore makes the statistics, without which queries are slow.
+  // Neither pg_upgrade nor pg_restore makes the statistics, without which queries are slow. Call it
+  // after the comparison.
   Result<void> finish_new() {
     progress_.begin_stage(0.95, 1);
     progress_.report(0, "Collecting statistics");
     {
       auto connection = STRATA_TRY(PgConnection::connect(new_->dsn(), kMigrationLimits));
+      // The new cluster has another identifier.
+      if (owns_files_)
+        STRATA_TRY(connection.query(sql("UPDATE public.file_store SET owner = ", kDatabaseId,
+                                        " || '/' || split_part(owner, '/', 3)")));
       STRATA_TRY(connection.script("ANALYZE"));
     }
     return new_->stop();
@@ -314,6 +334,7 @@ class Upgrade {
   Progress& progress_;
   ScratchFolder work_;  // deleted after the clusters have stopped
   std::unique_ptr<Cluster> old_, new_;
+  bool owns_files_ = false;
 };
 
 Result<UpgradeReport> upgrade_or_rehearse(const UpgradePlan& plan, bool rehearse,

@@ -116,7 +116,8 @@ Result<void> Files::open(std::unique_ptr<FileStore> files) {
           sql("UPDATE file_store SET owner = ", kDatabaseId,
               " || '/' || $1 WHERE NOT starts_with(owner, ", kDatabaseId, " || '/')"),
           Params().text(owner)));
-      const auto row = STRATA_TRY(connection.query("SELECT id, owner FROM file_store"));
+      const auto row =
+          STRATA_TRY(connection.query("SELECT id, split_part(owner, '/', 3) FROM file_store"));
       return read_row(row);
     }));
     STRATA_TRY(files->write_mark(to_text(own)));
@@ -151,9 +152,10 @@ Result<void> Files::adopt() {
   if (!is_open()) return no_place();
   // Until the mark is written, no database owns the files, and the command can be repeated.
   const auto own = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<FilesMark> {
-    const auto row = STRATA_TRY(connection.query(
-        sql("UPDATE file_store SET owner = ", kDatabaseId, " || '/' || $1 RETURNING id, owner"),
-        Params().text(to_string(random_uuid()))));
+    const auto row = STRATA_TRY(connection.query(sql("UPDATE file_store SET owner = ", kDatabaseId,
+                                                     " || '/' || $1 "
+                                                     "RETURNING id, split_part(owner, '/', 3)"),
+                                                 Params().text(to_string(random_uuid()))));
     return read_row(row);
   }));
   return blobs_.files()->write_mark(to_text(own));

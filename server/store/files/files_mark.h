@@ -8,10 +8,11 @@
 
 namespace strata::store {
 
-// The content of strata-files.json. The row of `file_store` has the same id and the same owner.
+// The content of strata-files.json. A database owns the files if its row of `file_store` has the
+// same id, and the text kDatabaseId/OWNER.
 struct FilesMark {
-  Uuid id;            // of the site
-  std::string owner;  // the database that may write and delete files: kDatabaseId and a UUID
+  Uuid id;  // of the site
+  std::string owner;
 };
 std::string to_text(const FilesMark& mark);
 // Returns nothing for a text that is not a mark.

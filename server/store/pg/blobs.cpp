@@ -50,7 +50,8 @@ Result<bool> Blobs::owns_files() {
   if (!files_) return false;
   const auto owner = STRATA_TRY(pool_.read([](PgConnection& connection) -> Result<std::string> {
     const auto row = STRATA_TRY(connection.query(
-        sql("SELECT owner FROM file_store WHERE starts_with(owner, ", kDatabaseId, " || '/')")));
+        sql("SELECT split_part(owner, '/', 3) FROM file_store WHERE starts_with(owner, ",
+            kDatabaseId, " || '/')")));
     return row.rows() > 0 ? row.text(0, 0) : std::string();
   }));
   if (owner.empty()) return false;

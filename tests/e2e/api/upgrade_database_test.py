@@ -4,6 +4,7 @@ import os
 import shutil
 import signal
 import subprocess
+import tempfile
 
 import pytest
 from support.cameras import camera_from
@@ -91,7 +92,11 @@ def interrupt(server, number):
 
 @pytest.fixture(scope="module")
 def server():
-    with Server() as started:
+    # The upgraded database still owns the files outside. Otherwise the server logs a warning.
+    with (
+        tempfile.TemporaryDirectory(prefix="strata-files-", dir="/tmp") as folder,
+        Server(options=["--files", os.path.join(folder, "files")]) as started,
+    ):
         if version_of(started) != 15:
             missing("PostgreSQL 15 is not the newest version in " + OLD)
         yield started
