@@ -1,4 +1,8 @@
 -- migrate:up
+-- readable-from: 44
+
+-- Programs that lack this migration would delete the rows of files. Before the first use of a folder or bucket, the server sets `readable_from` of this
+-- migration accordingly.
 
 -- The folder or bucket with the content of blobs that is outside the database. A site has at most one. Its file strata-files.json has the same id,
 -- so a server does not use a wrong folder.

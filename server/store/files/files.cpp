@@ -13,12 +13,15 @@
 #include "core/temporary_file.h"
 #include "core/text/hex.h"
 #include "core/uuid.h"
+#include "core/version.h"
+#include "store/cluster/schema_readers.h"
 #include "store/files/files_mark.h"
 #include "store/pg/blobs.h"
 
 namespace strata::store {
 namespace {
 
+constexpr const char* kMigration = "000046";  // that added the files outside the database
 constexpr int kRowsAtOnce = 500;
 constexpr int kUsersShown = 5;
 constexpr std::size_t kDamagedShown = 20;
@@ -36,6 +39,13 @@ constexpr auto kMayRemove =
 tl::unexpected<Error> no_place() {
   return fail(ErrorCode::malformed, "No place for files",
               "Name the folder or the bucket of the files with --files.", "--files");
+}
+
+tl::unexpected<Error> older_node() {
+  return fail(ErrorCode::conflict, "Nodes of another version",
+              "A node of another version uses this site, and could not read files outside the "
+              "database. Update all nodes before you start one with --files.",
+              "--files");
 }
 
 tl::unexpected<Error> another_site(const std::string& place) {
@@ -94,6 +104,8 @@ Result<void> Files::open(std::unique_ptr<FileStore> files) {
   const std::string owner = to_string(random_uuid());
   // The first server creates the row. Others then find its id.
   const auto known = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<Known> {
+    const auto older = STRATA_TRY(exclude_older_programs(connection, kMigration, version()));
+    if (older == OlderPrograms::running) return older_node();
     STRATA_TRY(connection.query(sql("INSERT INTO file_store (id, place, owner) VALUES ($1, $2, ",
                                     kDatabaseId, " || '/' || $3) ON CONFLICT DO NOTHING"),
                                 Params().uuid(random_uuid()).text(shown).text(owner)));

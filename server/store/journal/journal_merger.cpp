@@ -10,6 +10,7 @@
 #include "core/log.h"
 #include "domain/layers/revision.h"
 #include "domain/layers/tile_segment.h"
+#include "store/cluster/schema_readers.h"
 #include "store/journal/journal_reads.h"
 #include "store/nodes/deposed.h"
 #include "store/pg/pg_row.h"
@@ -418,16 +419,9 @@ void replace_by_segments(LayerId layer, const std::vector<Packed>& packed, State
 
 Result<bool> JournalMerger::may_merge(std::string_view version) {
   return journal_.pool_.write([&](PgConnection& connection) -> Result<bool> {
-    auto others = STRATA_TRY(connection.query(
-        "SELECT EXISTS (SELECT 1 FROM nodes WHERE lease_until > clock_timestamp() AND version <> $1)",
-        Params().text(version)));
-    if (others.boolean(0, 0)) return false;
-    // Programs that start later read this mark. Nodes that have already started have joined the
-    // site when this function is called again.
-    auto marked =
-        STRATA_TRY(connection.query("UPDATE schema_migrations SET readable_from = NULL "
-                                    "WHERE version = '000047' AND readable_from IS NOT NULL"));
-    return marked.affected() == 0;
+    // A node that has started already has joined the site when this server asks again.
+    const auto older = STRATA_TRY(exclude_older_programs(connection, "000047", version));
+    return older == OlderPrograms::absent;
   });
 }
 

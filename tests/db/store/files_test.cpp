@@ -10,6 +10,7 @@
 #include "store/content/models.h"
 #include "store/content/surface_images.h"
 #include "store/files/folder_files.h"
+#include "store/nodes/nodes.h"
 #include "store/pg/blobs.h"
 #include "store/tables/attachments.h"
 #include "support/s3_server.h"
@@ -601,6 +602,26 @@ TEST_F(FilesOutside, the_check_lists_missing_changed_and_superfluous_files) {
   sweep_twice();
   EXPECT_FALSE(fs::exists(file_of(other)));
   EXPECT_TRUE(fs::exists(file_of(geometry_)));
+}
+
+TEST_F(FilesOutside, programs_that_cannot_read_files_outside_are_excluded) {
+  const auto dsn = test::fresh_database();
+  const auto is_readable = [&] {
+    return PgConnection::connect(dsn)
+        ->query_once(
+            "SELECT readable_from IS NOT NULL FROM schema_migrations WHERE version = '000046'")
+        ->boolean(0, 0);
+  };
+  const auto store = test::open_store(dsn);
+  EXPECT_TRUE(is_readable()) << "a site without --files";
+  const Uuid other = random_uuid();
+  ASSERT_TRUE(store->nodes().join({other, "http://127.0.0.1:1", "0.0.1", ""}));
+  const FilesPlace new_place{(folder_.path() / "new").string(), {}};
+  EXPECT_EQ(store->files().open(new_place).error().code, ErrorCode::conflict);
+  EXPECT_TRUE(is_readable());
+  ASSERT_TRUE(store->nodes().leave(other));
+  ASSERT_TRUE(store->files().open(new_place));
+  EXPECT_FALSE(is_readable());
 }
 
 TEST_F(FilesOutside, a_wrong_folder_is_refused) {
