@@ -298,6 +298,13 @@ int run(ServeOptions options) {
           "this database is a copy of the one that the files belong to, so this server deletes no "
           "files, and stores new ones in the database. To make it the owner: strata files adopt");
   }
+  if (node && !store.files().is_open()) {
+    const auto facts = store.files().facts();
+    if (!facts) return report(facts.error());
+    if (!facts->place.empty())
+      log::warning("this site has used --files " + facts->place +
+                   ". If other nodes still use it, this node needs the same option");
+  }
   auto orphans = store.attachments().drop_orphans();
   if (!orphans) return report(orphans.error());
   if (*orphans > 0) log::info("deleted " + std::to_string(*orphans) + " unused files");

@@ -26,7 +26,7 @@ struct Content {
 };
 Sha256 sha256_of(Bytes hash);  // of a column of 32 bytes
 Content content_of(Bytes memory);
-// Hashes the file before it is sent, so that a scan that is already stored is not sent again.
+// Hashes the file before it is sent, so that a scan that is in the database is not sent again.
 Result<Content> content_of(const std::filesystem::path& file,
                            const std::function<bool()>& cancelled);
 

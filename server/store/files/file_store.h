@@ -20,9 +20,9 @@ struct StoredFile {
 };
 
 // Content by its SHA-256, in a folder or a bucket. The names are the same in both, so either can be
-// copied to the other: `ab/cd/` and the hash in hexadecimal digits. Thread-safe. Each call has a
-// time limit. If the disk or the server does not respond, the error is `unavailable`, and if it has
-// no space, `storage_full`.
+// copied to the other: `ab/cd/` and the hash in hexadecimal digits. Thread-safe. A call to an S3
+// server ends after a limited time, and one to a folder when its disk responds. If the disk or the
+// server does not respond, the error is `unavailable`, and if it has no space, `storage_full`.
 class FileStore {
  public:
   virtual ~FileStore() = default;
