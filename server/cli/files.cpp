@@ -107,7 +107,8 @@ Command add_files(CLI::App& app) {
       ->add_option("--to", options->to, "files or database")
       ->check(CLI::IsMember({"files", "database"}))
       ->capture_default_str();
-  add("adopt", "Let a restored copy of the database write and delete files, instead of the original",
+  add("adopt",
+      "Let a restored copy of the database, instead of the original, write and delete files",
       adopt_files);
   return choosing<FileOptions>(parent, options, std::move(works));
 }

@@ -295,8 +295,9 @@ int run(ServeOptions options) {
     if (!owns) return report(owns.error());
     if (!*owns)
       log::warning(
-          "this database is a copy of the one that the files belong to, so this server deletes no "
-          "files, and stores new ones in the database. To make it the owner: strata files adopt");
+          "this database is a copy, and the original owns the files, so this server deletes no "
+          "files, and stores new files in the database. To make the copy the owner: strata files "
+          "adopt");
   }
   if (node && !store.files().is_open()) {
     const auto facts = store.files().facts();

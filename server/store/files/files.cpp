@@ -38,7 +38,7 @@ constexpr auto kMayRemove =
 
 tl::unexpected<Error> no_place() {
   return fail(ErrorCode::malformed, "No place for files",
-              "Name the folder or the bucket of the files with --files.", "--files");
+              "Specify the folder or the bucket of the files with --files.", "--files");
 }
 
 tl::unexpected<Error> older_node() {
@@ -102,7 +102,7 @@ Result<void> Files::open(std::unique_ptr<FileStore> files) {
     std::int64_t outside = 0;
   };
   const std::string owner = to_string(random_uuid());
-  // The first server creates the row. Others then find its id.
+  // The first server creates the row. Other servers then read its id.
   const auto known = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<Known> {
     const auto older = STRATA_TRY(exclude_older_programs(connection, kMigration, version()));
     if (older == OlderPrograms::running) return older_node();
@@ -251,7 +251,7 @@ Result<void> Files::remove_marked(std::chrono::seconds keep, std::chrono::second
 }
 
 // Deletes the file of a row that is marked, or the mark if there is no file. The row stays locked
-// until then, so no other server deletes a later file of this hash.
+// during the deletion, so no other server deletes a later file of this hash.
 Result<void> Files::finish(Bytes hash, std::chrono::seconds keep, std::chrono::seconds rest) {
   static constexpr auto kDelete = sql("DELETE FROM blobs b WHERE sha256 = $1 AND ", kIsUnused);
   std::optional<Error> refused;

@@ -16,7 +16,7 @@ class Blobs;
 class Pool;
 
 struct FilesFacts {
-  std::string place;               // where the files are, as last used; empty: never used
+  std::string place;               // the last place of the files; empty: none was used yet
   std::int64_t outside_files = 0;  // contents in use that are outside the database
   std::int64_t outside_bytes = 0;
   std::int64_t inside_files = 0;

@@ -49,15 +49,15 @@ struct S3Patience {
 };
 
 // Sends requests to a bucket, signed by libcurl (AWS Signature Version 4). Repeats a request after
-// failures that may pass: sends a change up to three times, and a read, which somebody waits for,
+// temporary failures: sends a change up to three times, and a read, which somebody waits for,
 // twice. If the server does not answer, later requests fail at once, except one each `down`, so
 // they do not occupy all threads of the server. Thread-safe.
 class S3Client {
  public:
   explicit S3Client(S3Bucket bucket, S3Patience patience = {});
-  // Returns also replies that are errors, such as 404. Returns `unavailable` if the server cannot
-  // be reached, or answers with an error of its own. Returns `conflict` if the file of the body
-  // becomes shorter.
+  // Also returns replies with an error status such as 404. Returns `unavailable` if the server
+  // cannot be reached, or replies with the status 408, 429 or 5xx. Returns `conflict` if the file
+  // of the body becomes shorter.
   Result<S3Reply> send(const S3Call& call, const std::function<bool()>& cancelled = {});
 
  private:

@@ -108,7 +108,7 @@ Result<void> Blobs::upload(std::span<Content> contents, const std::function<bool
     }));
     // Otherwise the content is in the database, or a file is being removed.
     if (reserved.affected() == 0) continue;
-    // Also if the file exists: it may be damaged or unfinished.
+    // Upload even if the file exists, because it may be damaged or unfinished.
     if (const auto stored = files_->put(content, ending); !stored)
       return tl::unexpected(without_names(stored.error()));
     content.uploaded = now;

@@ -162,7 +162,7 @@ class FilesOutside : public ::testing::Test {
         Params().text(row->text(0, 0)).text(row->text(0, 1)).text(row->text(0, 2))));
     return copy;
   }
-  // Deletes what nothing uses at once: a file in the first pass, its row in the second.
+  // Deletes unused files without a delay: the file in the first pass, its row in the second pass.
   void sweep_twice() {
     for (int pass = 0; pass < 2; ++pass) {
       const auto swept = store_->files().sweep(seconds(0), seconds(0));
