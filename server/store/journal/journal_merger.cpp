@@ -36,7 +36,8 @@ constexpr const char* kWindow =
     "coalesce(e.answer ->> 'provisional', ''), hashtextextended((e.record - '{path,widths,n}'::text[])::text, 0)) ELSE '' END, "
     "coalesce(CASE WHEN e.tiles IS NOT NULL THEN (SELECT string_agg(int2send(t), ''::bytea ORDER BY t) FROM unnest(e.tiles) t) "
     "ELSE (SELECT string_agg(int2send((r.tile_y * 128 + r.tile_x)::smallint), ''::bytea ORDER BY r.tile_y, r.tile_x) "
-    "FROM tile_revisions r WHERE r.layer_id = e.layer_id AND r.sequence = e.sequence) END, ''::bytea) "
+    "FROM tile_revisions r WHERE r.layer_id = e.layer_id AND r.sequence = e.sequence) END, ''::bytea), "
+    "CASE WHEN b.is_batch THEN jsonb_array_length(e.record -> 'path') ELSE 0 END "
     "FROM edits e CROSS JOIN LATERAL (SELECT coalesce(e.op = 'stroke' AND e.first_sequence IS NULL AND "
     "jsonb_typeof(e.record) = 'object' AND jsonb_typeof(e.record -> 'n') = 'number' AND jsonb_typeof(e.record -> 'path') = 'array', "
     "false) AS is_batch) b "
@@ -106,6 +107,14 @@ Result<void> commit_if(PgConnection& connection, ModelId model, std::int64_t epo
       return transaction.commit();
   }
   return not_merged(connection, model, epoch);
+}
+
+// One damaged row must not stop the merges of all later edits. Returns other errors, after which
+// the merge is tried again.
+Result<void> skip_if_damaged(const Error& problem, const std::string& what) {
+  if (problem.code != ErrorCode::internal) return tl::unexpected(problem);
+  log::warning("journal: " + what + " stay as they are: " + problem.detail);
+  return {};
 }
 
 // --- merging the edits of a stroke
@@ -335,6 +344,17 @@ void replace_revisions(LayerId layer, const PgArray& sequences, std::int64_t las
        std::move(insert)});
 }
 
+// Returns a row if people have named a state in the middle of the batches since the window was
+// read. A new snapshot locks the model, so none can follow while the transaction has its lock.
+void find_named_state(ModelId model, const std::vector<std::int64_t>& sequences, Statements& out) {
+  Params params;
+  params.id(model).integer(sequences.front()).integer(sequences.back());
+  out.push_back(
+      {"SELECT 1 FROM snapshots WHERE model_id = $1 AND jsonb_typeof(content -> 'sequence') = 'number' "
+       "AND (content ->> 'sequence')::bigint >= $2 AND (content ->> 'sequence')::bigint < $3 LIMIT 1",
+       std::move(params)});
+}
+
 bool all_equal(const PgResult& removed, const PgResult& changed) {
   for (int i = 0; i < removed.rows(); ++i)
     if (removed.text(i, 0) != changed.text(0, 0)) return false;
@@ -479,7 +499,8 @@ Result<JournalMerger::Window> JournalMerger::read_window(
         [&](const PgResult& row) -> Result<void> {
           window.edits.push_back({row.integer(0, 0), row.id<LayerId>(0, 1), row.uuid(0, 2),
                                   row.text(0, 3), row.time(0, 4), row.boolean(0, 5), row.text(0, 6),
-                                  read_tiles(row.bytes(0, 7))});
+                                  read_tiles(row.bytes(0, 7)),
+                                  static_cast<std::size_t>(row.integer(0, 8))});
           return {};
         }));
     window.rules.is_cut = window.edits.size() >= kEditsAtOnce;
@@ -499,21 +520,29 @@ Result<std::optional<std::int64_t>> JournalMerger::merge_group(
   if (batches.size() != sequences.size()) return std::nullopt;
   const auto merged = join_batches(batches);
   if (!merged) return std::nullopt;
-  const auto revisions = STRATA_TRY(join_revisions(connection, layer, *type, all));
-  if (!revisions.can_merge) return std::nullopt;
+  const auto revisions = join_revisions(connection, layer, *type, all);
+  if (!revisions) {
+    STRATA_TRY(skip_if_damaged(
+        revisions.error(),
+        "the edits up to " + std::to_string(sequences.back()) + " of layer " + to_string(layer)));
+    return std::nullopt;
+  }
+  if (!revisions->can_merge) return std::nullopt;
 
   Statements statements;
   begin_fenced(claim.model, claim.epoch, layer, std::string(name(*type)), statements);
-  replace_edits(claim.model, batches, *merged, revisions, statements);
+  replace_edits(claim.model, batches, *merged, *revisions, statements);
   insert_batches(claim.model, layer, batches, statements);
-  replace_revisions(layer, all, sequences.back(), revisions, statements);
+  replace_revisions(layer, all, sequences.back(), *revisions, statements);
+  find_named_state(claim.model, sequences, statements);
   STRATA_TRY(commit_if(connection, claim.model, claim.epoch, statements, [&](const auto& results) {
     const PgResult& removed = results[kFirstChange];
     const PgResult& changed = results[kFirstChange + 1];
     return removed.rows() == static_cast<int>(batches.size()) - 1 && changed.rows() == 1 &&
-           all_equal(removed, changed) && results[kFirstChange + 3].affected() == revisions.rows;
+           all_equal(removed, changed) && results[kFirstChange + 3].affected() == revisions->rows &&
+           results[kFirstChange + 5].rows() == 0;
   }));
-  return std::optional(revisions.rows);
+  return std::optional(revisions->rows);
 }
 
 // Stores the list of tiles of the edits that were not merged. Undo needs the list when their
@@ -568,9 +597,11 @@ Result<std::int64_t> JournalMerger::pack_layer(const Claim& claim, LayerId layer
       std::vector<TileAddress> tiles;
       bool has_several = false;  // a tile has the revisions of several segments
       for (int n = i; n < std::min(counted.rows(), i + kTilesAtOnce); ++n) {
+        if (unpackable_[layer].contains(address_of(counted, n))) continue;
         tiles.push_back(address_of(counted, n));
         has_several = has_several || counted.integer(n, 2) >= 2 * kRevisionsPerSegment;
       }
+      if (tiles.empty()) continue;
       if (!go_on()) return packed;
       const auto some = STRATA_TRY(pack_tiles(claim, layer, through, tiles));
       packed += some;
@@ -589,13 +620,18 @@ Result<std::int64_t> JournalMerger::pack_tiles(const Claim& claim, LayerId layer
   if (!type) return 0;
   std::vector<Packed> packed;
   for (const TileAddress tile : tiles) {
-    auto segment = STRATA_TRY(pack_tile(connection, layer, *type, tile, through));
+    auto segment = pack_tile(connection, layer, *type, tile, through);
+    if (segment && *segment) {
+      packed.push_back(std::move(**segment));
+      continue;
+    }
+    const std::string what = "the revisions of tile " + std::to_string(tile.x) + ", " +
+                             std::to_string(tile.y) + " of layer " + to_string(layer);
     if (segment)
-      packed.push_back(std::move(*segment));
+      log::warning("journal: " + what + " were not packed, because they do not follow one another");
     else
-      log::warning("journal: the revisions of tile " + std::to_string(tile.x) + ", " +
-                   std::to_string(tile.y) + " of layer " + to_string(layer) +
-                   " were not packed, because they do not follow one another");
+      STRATA_TRY(skip_if_damaged(segment.error(), what));
+    unpackable_[layer].insert(tile);
   }
   if (packed.empty()) return 0;
   Statements statements;

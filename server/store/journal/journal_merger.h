@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -26,7 +27,7 @@ class PgConnection;
 // Each step is one short transaction that replaces rows. It compares the epoch of the model
 // (store/nodes/nodes.h), so a server that has lost the model changes nothing. The commits do not
 // wait for the disk: if a transaction is lost, its rows do not change. Used by one thread at a
-// time.
+// time. Damaged rows do not change, and the log names them.
 class JournalMerger {
  public:
   static constexpr std::chrono::seconds kEndedAfter{60};
@@ -76,6 +77,8 @@ class JournalMerger {
   Journal& journal_;
   // Revisions of each layer since its tiles were last counted. No entry: they were never counted.
   std::map<LayerId, std::size_t> since_packed_;
+  // Tiles with damaged revisions. They stay as they are, and the log has one line about each.
+  std::map<LayerId, std::set<TileAddress>> unpackable_;
 };
 
 }  // namespace strata::store

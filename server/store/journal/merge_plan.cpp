@@ -82,7 +82,7 @@ class Planner {
     std::int64_t first = 0;
     std::string traits;
     std::vector<std::int16_t> tiles;  // ascending
-    std::size_t revisions = 0;
+    std::size_t revisions = 0, points = 0;
   };
   using Groups = std::map<StrokeKey, Group>;
 
@@ -91,16 +91,18 @@ class Planner {
     auto open = open_.find(key);
     if (open != open_.end() && (!edit.is_batch || open->second.traits != edit.traits ||
                                 open->second.revisions + edit.tiles.size() > rules_.max_revisions ||
+                                open->second.points + edit.points > rules_.max_points ||
                                 edit.sequence - open->second.first > rules_.max_span)) {
       end(open);
       open = open_.end();
     }
     if (!edit.is_batch) return;
     if (open == open_.end())
-      open = open_.emplace(key, Group{{}, edit.sequence, edit.traits, {}, 0}).first;
+      open = open_.emplace(key, Group{{}, edit.sequence, edit.traits, {}, 0, 0}).first;
     Group& group = open->second;
     group.edits.push_back(index);
     group.revisions += edit.tiles.size();
+    group.points += edit.points;
     std::vector<std::int16_t> tiles;
     std::ranges::set_union(group.tiles, edit.tiles, std::back_inserter(tiles));
     group.tiles = std::move(tiles);

@@ -23,6 +23,7 @@ struct PlannedEdit {
   std::string traits;
   // The tiles with a revision of the edit, as y * 128 + x, ascending.
   std::vector<std::int16_t> tiles;
+  std::size_t points = 0;  // of the path of a batch
 };
 
 struct MergeRules {
@@ -35,6 +36,8 @@ struct MergeRules {
   // Limits of one merge, so that it locks the journal only for some milliseconds.
   std::size_t max_revisions = 2048;
   std::int64_t max_span = 4096;  // from the first to the last sequence
+  // Of the path of a merged edit, so that its record stays small enough for the database.
+  std::size_t max_points = 16384;
 };
 
 struct MergePlan {

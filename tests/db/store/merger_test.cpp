@@ -7,6 +7,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "db/journal_painter.h"
 #include "domain/layers/mask_texels.h"
@@ -328,6 +329,39 @@ class Merger : public ::testing::Test {
     return PgConnection::connect(dsn_)->query_once("SELECT count(*) FROM " + what)->integer(0, 0);
   }
   void run(const std::string& sql) { ASSERT_TRUE(PgConnection::connect(dsn_)->script(sql)); }
+  void name_state(std::int64_t sequence) {
+    run("INSERT INTO snapshots (model_id, slug, name, content, user_name) VALUES (" +
+        to_string(model_.id) + ", 's', 's', '{\"sequence\": " + std::to_string(sequence) +
+        "}', 'Ada')");
+  }
+  // Saves a stroke of some batches. Each of them paints another square into the same two tiles.
+  // `states` gets the texels of the layer before the stroke and after each batch.
+  void save_stroke(const Layer& layer, int batches, std::vector<Content>* states = nullptr) {
+    JournalWriter writer(*store_, {});
+    Content& content = contents_[layer.id];
+    if (states) states->push_back(content);
+    const Uuid stroke = random_uuid();
+    for (int n = 0; n < batches; ++n) {
+      JournalEntry entry = test::Painter(layer, 1).entry(++sequence_);
+      entry.stroke = stroke;
+      entry.record = {{"op", "stroke"}, {"n", n}, {"path", {{n, 1}, {n + 1, 1}}}};
+      for (const TileAddress tile : {TileAddress{0, 0}, TileAddress{1, 0}}) {
+        const TileData before = content.contains(tile) ? content.at(tile) : TileData(layer.type);
+        TileMask written;
+        TileData after = before;
+        for (int texel = 0; texel < 9; ++texel) {
+          written.set(static_cast<int>(100 * sequence_) % kTexelsPerTile + texel);
+          after.write(static_cast<int>(100 * sequence_) % kTexelsPerTile + texel,
+                      1 + static_cast<std::uint32_t>(sequence_ % 99));
+        }
+        entry.revisions.push_back(
+            {tile, encode_revision(make_revision(tile, before, after, written)), {}});
+        content[tile] = std::move(after);
+      }
+      ASSERT_TRUE(save(writer, std::move(entry)));
+      if (states) states->push_back(content);
+    }
+  }
   // Merges all strokes, because enough time has passed.
   void merge_all(Painted& painted) {
     const auto done = painted.merge(merger_, painted.time() + 1h);
@@ -343,6 +377,8 @@ class Merger : public ::testing::Test {
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
   Model model_ = test::make_model(*store_);
   JournalMerger merger_{store_->journal()};
+  std::int64_t sequence_ = 0;
+  std::map<LayerId, Content> contents_;  // of save_stroke
 };
 
 TEST_F(Merger, random_journals_give_the_same_texels_and_responses) {
@@ -426,6 +462,59 @@ TEST_F(Merger, a_stroke_becomes_one_edit_with_the_whole_path_and_the_sums) {
   EXPECT_EQ(steps->steps[0].first, 1);
   EXPECT_EQ(steps->steps[0].last, 4);
   EXPECT_EQ(steps->steps[0].texels, 60u);
+}
+
+// A person names a state in the middle of a stroke after the merger has read the journal.
+TEST_F(Merger, a_state_that_is_named_during_a_merge_stays_exact) {
+  std::vector<Content> states;
+  const Layer layer = test::make_layer(*store_, model_.id);
+  save_stroke(layer, 4, &states);
+  const auto epoch = store_->journal().state(model_.id, {})->epoch;
+  const auto merge = [&](const JournalMerger::Continue& go_on) {
+    return merger_.merge(model_.id, epoch, Clock::now() + 1h, go_on);
+  };
+  bool is_named = false;
+  const auto disturbed = merge([&] {
+    if (!std::exchange(is_named, true)) name_state(2);
+    return true;
+  });
+  ASSERT_TRUE(is_named);
+  ASSERT_FALSE(disturbed);
+  EXPECT_EQ(disturbed.error().code, ErrorCode::conflict);
+  EXPECT_EQ(count("edits"), 4);
+  // The next plan includes the state.
+  ASSERT_TRUE(merge([] { return true; }));
+  EXPECT_EQ(count("edits"), 2);
+  EXPECT_TRUE(content_of(store_->journal().load_tiles(layer, 2).value()) == states.at(2));
+  EXPECT_TRUE(content_of(store_->journal().load_tiles(layer).value()) == states.at(4));
+}
+
+TEST_F(Merger, a_damaged_revision_does_not_stop_the_merges_of_others) {
+  const Layer damaged = test::make_layer(*store_, model_.id, ValueType::u8, "damaged"),
+              other = test::make_layer(*store_, model_.id, ValueType::u8, "other");
+  save_stroke(damaged, 3);
+  save_stroke(other, 3);
+  run("UPDATE tile_revisions SET difference = '\\x00' WHERE sequence = 2");
+  const auto epoch = store_->journal().state(model_.id, {})->epoch;
+  const auto done = merger_.merge(model_.id, epoch, Clock::now() + 1h, [] { return true; });
+  ASSERT_TRUE(done) << done.error().detail;
+  EXPECT_EQ(done->edits, 2);
+  EXPECT_EQ(count("edits WHERE layer_id = " + to_string(damaged.id)), 3);
+  EXPECT_EQ(count("edits WHERE layer_id = " + to_string(other.id)), 1);
+  EXPECT_EQ(count("merged_journals WHERE sequence = 6"), 1) << "the window would be read again";
+}
+
+TEST_F(Merger, a_damaged_tile_does_not_stop_the_packing_of_others) {
+  const Layer layer = test::make_layer(*store_, model_.id);
+  for (int i = 0; i < JournalMerger::kRevisionsPerSegment; ++i) save_stroke(layer, 1);
+  run("UPDATE tile_revisions SET difference = '\\x00' WHERE sequence = 5 AND tile_y = 0 AND tile_x = 0");
+  const auto epoch = store_->journal().state(model_.id, {})->epoch;
+  const auto done = merger_.merge(model_.id, epoch, Clock::now() + 1h, [] { return true; });
+  ASSERT_TRUE(done) << done.error().detail;
+  EXPECT_EQ(count("tile_segments"), 1);
+  EXPECT_EQ(count("tile_segments WHERE tile_y = 0 AND tile_x = 0"), 0);
+  EXPECT_EQ(count("tile_revisions WHERE tile_y = 0 AND tile_x = 0"),
+            JournalMerger::kRevisionsPerSegment);
 }
 
 TEST_F(Merger, a_review_finds_a_stroke_by_each_of_its_batches) {

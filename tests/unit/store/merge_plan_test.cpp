@@ -147,6 +147,16 @@ TEST(MergePlan, a_stroke_longer_than_the_list_is_merged_in_parts) {
   EXPECT_EQ(journal.groups(rules).size(), 4u);
 }
 
+TEST(MergePlan, the_path_of_a_merged_edit_is_limited) {
+  Journal journal;
+  for (int i = 0; i < 6; ++i) journal.batch(1, {1}).points = 100;
+  MergeRules rules = Journal::ended();
+  rules.max_points = 300;
+  EXPECT_THAT(journal.groups(rules), ElementsAre(ElementsAre(1, 2, 3), ElementsAre(4, 5, 6)));
+  rules.max_points = 299;
+  EXPECT_EQ(journal.groups(rules).size(), 3u);
+}
+
 // The oracle: the batches of a group move to its last sequence. The texels at the end of each
 // stroke and in each named state must contain the same batches, and no batch may move over another
 // edit of its tile.
