@@ -1831,6 +1831,7 @@ CREATE TABLE public.schema_migrations (
     version character varying(128) NOT NULL,
     readable_from bigint,
     applied_by text,
+    unreadable_since timestamp with time zone,
     CONSTRAINT schema_migrations_applied_by_check CHECK ((char_length(applied_by) <= 255)),
     CONSTRAINT schema_migrations_readable_from_check CHECK ((readable_from > 0))
 );

@@ -11,6 +11,9 @@ ALTER TABLE edits
   -- the tiles with a revision of the edit, as tile_y * 128 + tile_x. Null until the merger has read the edit
   ADD COLUMN tiles smallint[];
 
+-- The time when the server marked a migration as no longer readable for older programs. Null: it did not.
+ALTER TABLE schema_migrations ADD COLUMN unreadable_since timestamptz;
+
 -- The batches of merged edits. A batch that is sent again must get its first response.
 CREATE TABLE edit_batches (
   model_id bigint NOT NULL REFERENCES all_models ON DELETE CASCADE,

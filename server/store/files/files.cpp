@@ -104,7 +104,7 @@ Result<void> Files::open(std::unique_ptr<FileStore> files) {
   const std::string owner = to_string(random_uuid());
   // The first server creates the row. Other servers then read its id.
   const auto known = STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<Known> {
-    const auto older = STRATA_TRY(exclude_older_programs(connection, kMigration, version()));
+    const auto older = STRATA_TRY(exclude_older_programs(connection, kMigration, version(), {}));
     if (older == OlderPrograms::running) return older_node();
     STRATA_TRY(connection.query(sql("INSERT INTO file_store (id, place, owner) VALUES ($1, $2, ",
                                     kDatabaseId, " || '/' || $3) ON CONFLICT DO NOTHING"),

@@ -437,10 +437,11 @@ void replace_by_segments(LayerId layer, const std::vector<Packed>& packed, State
 
 }  // namespace
 
-Result<bool> JournalMerger::may_merge(std::string_view version) {
+Result<bool> JournalMerger::may_merge(std::string_view version,
+                                      std::chrono::milliseconds after_mark) {
   return journal_.pool_.write([&](PgConnection& connection) -> Result<bool> {
-    // A node that has started already has joined the site when this server asks again.
-    const auto older = STRATA_TRY(exclude_older_programs(connection, "000047", version));
+    const auto older =
+        STRATA_TRY(exclude_older_programs(connection, "000047", version, after_mark));
     return older == OlderPrograms::absent;
   });
 }

@@ -32,6 +32,8 @@ class JournalMerger {
  public:
   static constexpr std::chrono::seconds kEndedAfter{60};
   static constexpr int kRevisionsPerSegment = 32;
+  // A node that has checked the database before the mark joins the site within this time.
+  static constexpr std::chrono::seconds kJoinsWithin{60};
 
   // Called between transactions. It may wait. If it returns false, the merger stops.
   using Continue = std::function<bool()>;
@@ -39,9 +41,11 @@ class JournalMerger {
   explicit JournalMerger(Journal& journal) : journal_(journal) {}
 
   // Returns whether the journal may be merged. Programs before this one cannot read the result, so
-  // it first marks the database, and returns false. It also returns false while a node with another
-  // version has a lease.
-  Result<bool> may_merge(std::string_view version);
+  // it first marks the database, and returns false until `after_mark` has passed. It also returns
+  // false while the database has a node with another version, even if its lease is over: a node
+  // that was paused joins again without another check of the database.
+  Result<bool> may_merge(std::string_view version,
+                         std::chrono::milliseconds after_mark = kJoinsWithin);
 
   struct Done {
     std::int64_t edits = 0;      // edits that were merged into others

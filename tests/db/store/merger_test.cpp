@@ -637,15 +637,33 @@ TEST_F(Merger, it_waits_for_nodes_of_other_versions_and_marks_the_database) {
         ->query("SELECT readable_from IS NULL FROM schema_migrations WHERE version = '000047'")
         ->boolean(0, 0);
   };
+  const auto may_merge = [&](std::chrono::milliseconds after_mark) {
+    return merger_.may_merge("0.0.2", after_mark).value();
+  };
   EXPECT_FALSE(readable_from());
   const Uuid other = random_uuid();
   ASSERT_TRUE(store_->nodes().join({other, "http://127.0.0.1:1", "0.0.1", ""}));
-  EXPECT_FALSE(merger_.may_merge("0.0.2").value()) << "an older node could not read the result";
+  EXPECT_FALSE(may_merge(0ms)) << "an older node could not read the result";
+  EXPECT_FALSE(readable_from());
+  // A paused node renews its lease when it continues, and does not check the database again.
+  run("UPDATE nodes SET lease_until = clock_timestamp() - interval '50 minutes'");
+  EXPECT_FALSE(may_merge(0ms));
   EXPECT_FALSE(readable_from());
   ASSERT_TRUE(store_->nodes().leave(other));
-  EXPECT_FALSE(merger_.may_merge("0.0.2").value()) << "a node that has just started may join yet";
+  EXPECT_FALSE(may_merge(1h)) << "a node that has just started may join yet";
   EXPECT_TRUE(readable_from());
-  EXPECT_TRUE(merger_.may_merge("0.0.2").value());
+  // Another server, or the same one after a restart, waits for the same mark.
+  JournalMerger another(store_->journal());
+  EXPECT_FALSE(another.may_merge("0.0.2", 1h).value());
+  run("UPDATE schema_migrations SET unreadable_since = unreadable_since - interval '61 minutes'");
+  EXPECT_TRUE(another.may_merge("0.0.2", 1h).value());
+  EXPECT_TRUE(may_merge(0ms));
+}
+
+TEST_F(Merger, nodes_that_ended_long_ago_do_not_delay_merges) {
+  ASSERT_TRUE(store_->nodes().join({random_uuid(), "http://127.0.0.1:1", "0.0.1", ""}));
+  run("UPDATE nodes SET lease_until = clock_timestamp() - interval '61 minutes'");
+  EXPECT_TRUE(merger_.may_merge("0.0.2", 0ms).value());
 }
 
 }  // namespace

@@ -1,22 +1,27 @@
-"""One second after strokes have ended, the server merges their batches in the journal. States, the
-responses to repeated batches, undo and a restart give the same results as before."""
+"""Some seconds after strokes have ended, the server merges their batches in the journal, and packs
+the revisions of each tile. States, the responses to repeated batches, undo and a restart give the
+same results as before."""
 import json
 import uuid
 
 import pytest
 from support.cameras import camera_from
 from support.live_client import LiveClient
+from support.merges import MARKED_LONG_AGO
 from support.meshes import folded_grid
 from support.strata_server import StrataServer, wait_for
 
 M = "/models/sheet"
 L = M + "/layers/cracks"
 STROKES, BATCHES = 3, 6
+REVISIONS = 34  # more than a segment contains
 
 
 @pytest.fixture(scope="module")
 def server():
-    with StrataServer(options=["--merge-after", "1"]) as started:
+    # A stroke is merged in two parts if its author pauses for longer than this time.
+    with StrataServer(options=["--merge-after", "5"]) as started:
+        started.sql(MARKED_LONG_AGO)
         started.import_model(
             folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=1024
         )
@@ -126,4 +131,30 @@ def test_undo_takes_whole_strokes_also_after_a_restart(server, story):
         assert texels(server, answer["sequence"]) == story.states[end], f"redo of {end}"
     for at, state in story.states.items():
         assert texels(server, at) == state
+
+
+def stroke(camera, n):
+    path = [[300, 300], [320 + n, 310]]
+    return {"op": "stroke", "value": n + 1, "camera": camera, "radius_px": 9, "path": path}
+
+
+def test_packed_revisions_give_the_same_states(server, camera):
+    states = {}
+    for n in range(REVISIONS):
+        answer = server.ok("POST", L + "/edits", stroke(camera, n)).json()
+        states[answer["sequence"]] = texels(server, answer["sequence"])
+    # A server counts the revisions of a layer at its first merge.
+    assert server.stop() == 0
+    server.start()
+    last = server.ok("POST", L + "/edits", stroke(camera, REVISIONS)).json()["sequence"]
+    wait_for(
+        lambda: int(server.sql("SELECT count(*) FROM tile_segments")) > 0,
+        "the revisions to be packed",
+    )
+    for at, state in states.items():
+        assert texels(server, at) == state, f"the state after edit {at} changed"
+    for before in sorted(states, reverse=True)[:3]:
+        answer = server.ok("POST", L + "/undo").json()
+        assert texels(server, answer["sequence"]) == states[before], f"undo to {before}"
+    assert texels(server, last) != states[max(states)]
     server.assert_clean_log()
