@@ -289,6 +289,7 @@ const Route* Api::find_route(Request& request, Response& refusal) const {
 }
 
 Result<void> Api::identify(Request& request, const Route& route) {
+  STRATA_TRY(check_has_lease(context_, request));
   auto principal = STRATA_TRY(auth_.identify(request));
   request.principal = std::move(principal);
   if (!request.principal)

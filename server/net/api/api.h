@@ -90,7 +90,8 @@ class Api {
   void answer_read(const Request& request, const Route& route, const Respond& respond);
   static void answer_failures(const Request& request, const Respond& answer,
                               const std::function<void()>& work);
-  // Authenticates the caller and checks the role that the route requires.
+  // Authenticates the caller and checks the role that the route requires. Returns `unavailable` for
+  // a model while this node has no lease.
   Result<void> identify(Request& request, const Route& route);
 
   const ServerOptions options_;

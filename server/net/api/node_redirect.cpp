@@ -36,6 +36,14 @@ std::optional<Response> redirect_to_owner(room::Rooms& rooms, const Request& req
   return redirection(located(**owner, request.target, request.was_moved));
 }
 
+Result<void> check_has_lease(const RouteContext& context, const Request& request) {
+  const app::NodeLease* lease = context.options.lease;
+  if (!lease || lease->holds() || !request.params.contains("model")) return {};
+  return fail(ErrorCode::unavailable, "Node not available",
+              "This node has lost its connection to the database, so it cannot open models. Try "
+              "again in a moment.");
+}
+
 Result<void> check_job_is_here(const RouteContext& context, const Request& request) {
   const app::NodeLease* lease = context.options.lease;
   if (!lease || !request.params.contains("job")) return {};

@@ -21,6 +21,11 @@ struct RouteContext;
 // was authorized, because the address of a node is not public. May block.
 std::optional<Response> redirect_to_owner(room::Rooms& rooms, const Request& request);
 
+// Returns `unavailable` if the path names a model and this node has no lease, so that a proxy or a
+// client goes to another node at once. Call it before anything that uses the database: a database
+// that is cut off neither answers nor closes its connections. Does not block.
+Result<void> check_has_lease(const RouteContext& context, const Request& request);
+
 // Returns `moved`, with the address of the node, if another node runs the job in the path. Call it
 // before the project of the job is looked up, because only that node lists the job. May block.
 Result<void> check_job_is_here(const RouteContext& context, const Request& request);

@@ -3,16 +3,19 @@ another node when its node is killed, frozen or stopped. A node without the data
 its viewers. Times are printed, because the machine of a test may be slow."""
 import http.client
 import json
+import os
 import signal
 import socket
 import subprocess
 import time
 import uuid
+from types import SimpleNamespace
 
 import pytest
 from support.cameras import camera_from
-from support.live_client import LAST_RECTANGLE, Closed, LiveClient, Refused
+from support.live_client import AWAY, LAST_RECTANGLE, Closed, LiveClient, Refused
 from support.meshes import folded_grid
+from support.nginx import Nginx, free_port
 from support.nodes import FAULT_WORDS, Site
 from support.strata_server import LONG_S, StrataServer, wait_for
 
@@ -451,6 +454,51 @@ def test_a_node_that_is_cut_off_draws_but_acknowledges_nothing(linked):
             saved(live, edit_id)
     ids = history_ids(linked, model)
     assert all(ids.count(edit_id) == 1 for edit_id in late), (late, ids)
+
+
+def test_a_proxy_leads_away_from_a_node_that_is_cut_off(linked, tmp_path):
+    """nginx sends each new connection to the owner first. The owner must refuse it at once: if it
+    waited for its database, nginx would not try the other node, and pages would give up."""
+    model = linked.model
+    owner, other = owner_and_other(linked, model)
+    os.chmod(tmp_path, 0o755)
+    front = SimpleNamespace(host=owner.host, port=free_port(), tls=None, token=linked.token)
+    site = (
+        "map $http_upgrade $strata_connection { default upgrade; '' close; }\n"
+        f"upstream nodes {{ server 127.0.0.1:{owner.own_port} max_fails=1 fail_timeout=2s;\n"
+        f"server 127.0.0.1:{other.own_port} backup; }}\n"
+        f"server {{ listen 127.0.0.1:{front.port}; proxy_http_version 1.1;\n"
+        "proxy_set_header Host $http_host; proxy_set_header Upgrade $http_upgrade;\n"
+        "proxy_set_header Connection $strata_connection; proxy_read_timeout 120s;\n"
+        "location / { proxy_pass http://nodes;\n"
+        "proxy_next_upstream error timeout http_502 http_503; } }"
+    )
+    with Nginx(str(tmp_path), site, front.port), LiveClient(owner, model["id"]) as viewer:
+        viewer.hello()
+        owner.database.cut()
+        try:
+            until_database(viewer, False)
+            begun = time.monotonic()
+            with pytest.raises(Refused) as refused:
+                LiveClient(owner, model["id"])
+            assert refused.value.status == 503, refused.value
+            assert owner.get(f"/models/{model['id']}/layers").status == 503
+            # The database gives no answer, so an attempt to use it takes at least 30 s.
+            assert time.monotonic() - begun < 25
+
+            def welcomed():
+                try:
+                    with LiveClient(front, model["id"]) as live:
+                        live.send({"op": "hello", "client": "test"})
+                        return live.receive_until("welcome", "moved")["op"] == "welcome"
+                except (*AWAY, Refused):
+                    return False
+
+            wait_for(welcomed, "a welcome through nginx")
+            assert linked.owner(model["id"]) is other
+        finally:
+            owner.database.mend()
+        until_moved(viewer)
 
 
 def test_a_server_alone_has_no_nodes():
