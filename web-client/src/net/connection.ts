@@ -128,7 +128,7 @@ export class Connection {
   private readonly _resender = new Resender((message) => this.send(message));
   private readonly _search = new NodeSearch(
     {
-      connect: () => this.makeSocket(this._options.url),
+      connect: (node) => this.makeSocket(addressAtNode(this._options.url, node)),
       hello: (socket) => this.sayHello(socket),
       found: (socket, welcome) => this.onNodeFound(socket, welcome),
       random: () => (this._options.random ?? Math.random)(),

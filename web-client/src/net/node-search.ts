@@ -1,14 +1,15 @@
 // Looks for a node that can save the model while the node of the page has lost its database. The
-// page keeps its connection, which still draws the model, until a second connection at the address
-// of the site gets a welcome. The node of that connection has taken over the model.
+// page keeps its connection, which still draws the model, until a second connection gets a welcome.
+// The node of that connection has taken over the model. The search begins at the address of the
+// site, and follows each message `moved` once.
 
 import { parse_server_message, type ServerMessage } from "../core/protocol.gen";
 import { retryDelayMs } from "./resender";
 import type { SocketLike } from "./socket";
 
 export interface NodeSearchHost {
-  /** Begins a connection at the address of the site. */
-  connect(): SocketLike;
+  /** Begins a connection at the node with this address, or else at the address of the site. */
+  connect(node: string | undefined): SocketLike;
   hello(socket: SocketLike): void;
   /** The search has ended. The host takes over the socket, which has received this welcome. */
   found(socket: SocketLike, welcome: string): void;
@@ -19,6 +20,9 @@ export class NodeSearch {
   private _socket: SocketLike | null = null;
   private _timer: ReturnType<typeof setTimeout> | null = null;
   private _attempts = 0;
+  // The node that has the model, according to the last answer. Used for one attempt, because two
+  // nodes may refer to each other.
+  private _node: string | undefined;
 
   constructor(
     private readonly _host: NodeSearchHost,
@@ -28,6 +32,7 @@ export class NodeSearch {
   start(): void {
     this.stop();
     this._attempts = 0;
+    this._node = undefined;
     this.later();
   }
 
@@ -46,7 +51,9 @@ export class NodeSearch {
   }
 
   private attempt(): void {
-    const socket = this._host.connect();
+    const node = this._node;
+    this._node = undefined;
+    const socket = this._host.connect(node);
     socket.binaryType = "arraybuffer";
     this._socket = socket;
     const isNewest = (): boolean => socket === this._socket;
@@ -64,13 +71,15 @@ export class NodeSearch {
   }
 
   private onMessage(socket: SocketLike, data: unknown): void {
-    const op = typeof data === "string" ? opOf(data) : undefined;
-    if (op === "welcome") {
+    const message = typeof data === "string" ? parsed(data) : undefined;
+    if (message?.op === "welcome") {
       this._socket = null; // stop() must not close this socket
       this.stop();
       this._host.found(socket, data as string);
-    } else if (op === "moved" || op === "database") {
-      this.fail(); // that node cannot save the model either
+    } else if (message?.op === "moved" || message?.op === "database") {
+      // That node cannot save the model either.
+      if (message.op === "moved") this._node = message.url;
+      this.fail();
     }
   }
 
@@ -80,9 +89,9 @@ export class NodeSearch {
   }
 }
 
-function opOf(text: string): ServerMessage["op"] | undefined {
+function parsed(text: string): ServerMessage | undefined {
   try {
-    return parse_server_message(text).op;
+    return parse_server_message(text);
   } catch {
     return undefined;
   }

@@ -8,6 +8,7 @@ import type { DatabaseState } from "../../src/core/protocol.gen";
 import { FakeSocket, welcome } from "../fake-socket";
 
 const kHere = "wss://museum.example/api/v1/models/1/live";
+const kAtA = "wss://museum.example/node/a/api/v1/models/1/live";
 const camera = { view: [1], projection: [1], width: 640, height: 480 };
 const strokeOptions: StrokeOptions = {
   layer: 7,
@@ -199,9 +200,11 @@ describe("the search for another node", () => {
   });
 
   it.each([
-    ["that another node has the model", { op: "moved", url: "/node/a" } as const],
-    ["that it has no database either", database(false)],
-  ])("goes on if a node answers %s", (_, message) => {
+    ["that another node has the model", { op: "moved", url: "/node/a" } as const, kAtA],
+    ["that an unknown node has the model", { op: "moved" } as const, kHere],
+    ["that a foreign node has it", { op: "moved", url: "https://other.example" } as const, kHere],
+    ["that it has no database either", database(false), kHere],
+  ])("goes on if a node answers %s", (_, message, next) => {
     first().receive(database(false));
     nextAttempt();
     const asked = newest();
@@ -209,6 +212,33 @@ describe("the search for another node", () => {
     asked.receive(message);
     expect([asked.closed, first().closed, connection.state]).toEqual([true, false, "open"]);
     expect(nextAttempt()).toBe(500);
+    expect(newest().url).toBe(next);
+  });
+
+  it("continues at the node that has the model, wherever the site leads", () => {
+    first().receive(database(false));
+    nextAttempt();
+    newest().open();
+    newest().receive({ op: "moved", url: "/node/a" });
+    nextAttempt();
+    newest().open();
+    newest().receive(welcome());
+    expect([first().closed, connection.state, connection.databaseLost]).toEqual([
+      true,
+      "open",
+      false,
+    ]);
+  });
+
+  it("asks the site again if the node that has the model does not answer", () => {
+    first().receive(database(false));
+    nextAttempt();
+    newest().open();
+    newest().receive({ op: "moved", url: "/node/a" });
+    nextAttempt();
+    newest().lose();
+    nextAttempt();
+    expect(sockets.map(({ url }) => url)).toEqual([kHere, kHere, kAtA, kHere]);
   });
 
   it("goes on if a node does not answer", () => {
