@@ -398,6 +398,7 @@ void Rooms::resume() {
     impl_->suspended = false;
     impl_->changed.notify_all();
   }
+  impl_->services.store.nodes().drop_connections();
   for (const auto& room : impl_->open_ones()) room->continue_saving();
 }
 

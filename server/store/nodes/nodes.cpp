@@ -163,6 +163,8 @@ Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self
   return try_claim(model, self);
 }
 
+void Nodes::drop_connections() { pool_.drop_connections(); }
+
 std::unique_ptr<NodeMessages> Nodes::messages(const Uuid& self) {
   return std::make_unique<NodeMessages>(pool_.dsn(), self);
 }

@@ -5,15 +5,17 @@
 namespace strata::store {
 
 Result<Pool::Lease> Pool::acquire(const PgLimits& limits) {
+  int outage = 0;
   {
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, slot_for_, [&] { return free_slots_ > 0; }))
       return fail(ErrorCode::busy, "Database busy",
                   "All connections to the database are busy. Nothing changed. Try again shortly.");
     --free_slots_;
+    outage = outages_;
   }
   auto connection = take(limits);
-  if (connection) return Lease(*this, std::move(*connection));
+  if (connection) return Lease(*this, std::move(*connection), outage);
   free_slot();
   return tl::unexpected(connection.error());
 }
@@ -36,12 +38,19 @@ Result<PgConnection> Pool::take(const PgLimits& limits) {
   }
 }
 
-void Pool::release(PgConnection connection) {
+void Pool::release(PgConnection connection, int outage) {
   if (connection.alive()) {
     std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(connection));
+    if (outage == outages_) idle_.push_back(std::move(connection));
   }
   free_slot();
+}
+
+void Pool::drop_connections() {
+  std::vector<PgConnection> dropped;  // closed after the mutex is released
+  std::lock_guard lock(mutex_);
+  ++outages_;
+  dropped.swap(idle_);
 }
 
 void Pool::free_slot() {

@@ -25,21 +25,30 @@ class Pool {
 
   class Lease {
    public:
-    Lease(Pool& pool, PgConnection connection) : pool_(&pool), connection_(std::move(connection)) {}
+    Lease(Pool& pool, PgConnection connection, int outage)
+        : pool_(&pool), connection_(std::move(connection)), outage_(outage) {}
     Lease(Lease&& other) noexcept
-        : pool_(std::exchange(other.pool_, nullptr)), connection_(std::move(other.connection_)) {}
+        : pool_(std::exchange(other.pool_, nullptr)),
+          connection_(std::move(other.connection_)),
+          outage_(other.outage_) {}
     Lease& operator=(Lease&&) = delete;
     ~Lease() {
-      if (pool_) pool_->release(std::move(connection_));
+      if (pool_) pool_->release(std::move(connection_), outage_);
     }
     PgConnection& operator*() { return connection_; }
 
    private:
     Pool* pool_;
     PgConnection connection_;
+    int outage_;
   };
   Result<Lease> acquire() { return acquire(limits_); }
   Result<Lease> acquire(const PgLimits& limits);
+
+  // Closes all connections that exist now: idle ones at once, and others when their work ends. Call
+  // it after an outage. A connection to a server that has vanished looks intact until a statement
+  // has waited for its time limit, and one to a former primary may show an old state.
+  void drop_connections();
 
   // Runs `work(connection)`, which must only read, and repeats it on a new connection if the
   // connection broke.
@@ -78,7 +87,7 @@ class Pool {
 
  private:
   Result<PgConnection> take(const PgLimits& limits);
-  void release(PgConnection connection);
+  void release(PgConnection connection, int outage);
   void free_slot();
 
   const std::string dsn_;
@@ -88,6 +97,7 @@ class Pool {
   std::condition_variable changed_;
   int free_slots_;
   std::vector<PgConnection> idle_;
+  int outages_ = 0;  // the number of calls of `drop_connections`
 };
 
 }  // namespace strata::store

@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <map>
+#include <thread>
 
 #include "db/journal_painter.h"
 #include "store/content/models.h"
@@ -137,6 +139,31 @@ TEST_F(OwnershipOfModels, a_claim_ends_no_session_of_others) {
   EXPECT_TRUE(other.script("COMMIT"));
   EXPECT_TRUE(reading.script("COMMIT"));
   EXPECT_EQ(nodes_.claim(model_.id, b_.id).value(), 2);
+}
+
+TEST_F(OwnershipOfModels, after_an_outage_the_store_uses_no_earlier_connection) {
+  const Uuid node = random_uuid();
+  const auto store = test::open_store(with_sessions_of(node, dsn_));
+  const auto sessions = [&] {
+    const auto rows = connection_.query(
+        "SELECT coalesce(string_agg(pid::text, ' ' ORDER BY pid), '') FROM pg_stat_activity "
+        "WHERE application_name = $1",
+        Params().text("strata-" + to_string(node)));
+    return rows ? rows->text(0, 0) : rows.error().detail;
+  };
+  ASSERT_TRUE(store->nodes().all());
+  const std::string before = sessions();
+  ASSERT_TRUE(store->nodes().all());
+  ASSERT_EQ(sessions(), before) << "an idle connection is used again";
+  ASSERT_NE(before, "");
+  store->nodes().drop_connections();
+  // PostgreSQL ends the sessions soon after.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+  while (sessions() != "" && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_EQ(sessions(), "");
+  ASSERT_TRUE(store->nodes().all());
+  EXPECT_NE(sessions(), "");
 }
 
 TEST(WithSessionsOf, names_the_sessions_of_both_kinds_of_connection_strings) {
