@@ -320,10 +320,13 @@ void OpenRoom::saving_continued() {
   participants_part_->tell([](Listener& l) { l.database_reachable(true); });
 }
 
-void OpenRoom::deposed(const Error& why) {
+void OpenRoom::deposed(const Error& reason) {
   if (moved_) return;
-  log::warning("another server has claimed model " + to_string(model_id_) +
-               ", so this server closes it");
+  const bool is_gone = reason.code == ErrorCode::not_found;
+  log::warning((is_gone ? "another server has deleted model " : "another server has claimed model ") +
+               to_string(model_id_) + ", so this server closes it");
+  // Clients of a deleted model connect again, and then learn that it is gone.
+  const Error why = is_gone ? moved_to({}) : reason;
   tell_moved(why);
   boost::asio::post(services_.workers, [self = shared_from_this(), why] {
     if (self->services_.on_deposed) self->services_.on_deposed(self, why);

@@ -88,7 +88,7 @@ class OpenRoom final : public Room,
   void edit_saved(const Listener::Edit& edit) override;
   void edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) override;
   void journal_differs() override;
-  void deposed(const Error& why) override;
+  void deposed(const Error& reason) override;
   void paused() override;
   void saving_continued() override;
 

@@ -56,6 +56,8 @@ void OpenRoom::recover() {
 void OpenRoom::on_journal_read(Result<JournalContents> contents) {
   recovery_.working = false;
   if (recovery_.closed) return;
+  if (!contents && services_.options.node && contents.error().code == ErrorCode::not_found)
+    return deposed(contents.error());
   if (!contents) return retry_recovery(contents.error());
   if (contents->epoch != epoch_) return deposed(moved_to({}));
   recovery_.journal_differs = false;

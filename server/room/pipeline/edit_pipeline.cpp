@@ -182,6 +182,9 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
   asking_ = false;
   if (closed_ || std::exchange(lookup_outdated_, false)) return;
   journal_away_ = !state;
+  // While the room was suspended, any node could delete the model, and this room was not told.
+  if (!state && compares_ && state.error().code == ErrorCode::not_found)
+    return host_->deposed(state.error());
   if (!state) {
     // Refuses all edits that wait for the journal, not only those in the look-up, because the edits
     // of one stroke must stay in order.

@@ -51,7 +51,8 @@ class PipelineHost {
   // Called when the journal differs from the room, so the room must read the journal again. The
   // host pauses the pipeline.
   virtual void journal_differs() = 0;
-  // Called when another server has claimed the model. The host closes the pipeline.
+  // Called when another server has claimed the model (`moved`), or when it was deleted or moved to
+  // the Trash without this room (`not_found`). The host closes the pipeline.
   virtual void deposed(const Error& why) = 0;
   // Called after a request to pause, when nothing is in progress.
   virtual void paused() = 0;

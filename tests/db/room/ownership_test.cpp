@@ -13,6 +13,7 @@
 #include "room/participants.h"
 #include "room/queries.h"
 #include "room/rooms.h"
+#include "store/content/trash.h"
 #include "store/journal/journal_reads.h"
 #include "store/nodes/nodes.h"
 #include "store/pg/pg.h"
@@ -331,6 +332,21 @@ TEST_F(TwoNodes, a_model_that_another_node_claimed_meanwhile_is_not_saved_here_a
   wait_until_closed(*rooms_);
   EXPECT_EQ(rooms_->models_moved(), 1u);
   EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), there->sequence);
+  participant.reset();
+}
+
+TEST_F(TwoNodes, a_model_that_was_put_in_the_trash_meanwhile_is_closed) {
+  make_layer(ValueType::u8);
+  Follower follower;
+  const auto open_on_a = room();
+  auto participant = open_on_a->participants().join({"anna", Role::owner}, {}, &follower,
+                                                    [](const stream::FrameMessages&) {});
+  rooms_->suspend();
+  ASSERT_TRUE(other_store_->trash().put_model(model_.id, {}));  // node B needs no claim for this
+  rooms_->resume();
+  EXPECT_THAT(follower.wait(), ::testing::ElementsAre(""));
+  wait_until_closed(*rooms_);
+  EXPECT_EQ(rooms_->open("pot", Role::owner).error().code, ErrorCode::not_found);
   participant.reset();
 }
 

@@ -29,6 +29,7 @@ FAULT_WORDS = [
     "changes at other nodes may be missing",
     "may have lost them to other nodes",
     "has claimed model",
+    "has deleted model",
     "a commit failed and is tried again",
     "undid",
 ]
