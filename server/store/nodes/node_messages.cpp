@@ -64,6 +64,7 @@ Result<PgConnection*> NodeMessages::connected() {
     auto fresh = STRATA_TRY(PgConnection::connect(dsn_, kReaderLimits));
     STRATA_TRY(fresh.script("LISTEN strata_nodes"));
     connection_ = std::make_unique<PgConnection>(std::move(fresh));
+    reconnected_ = true;
   }
   return connection_.get();
 }
@@ -77,6 +78,7 @@ Result<NodeMessages::News> NodeMessages::begin(std::int64_t from,
   Position position{from, {}, now};
   for (int i = 0; i < rows.rows(); ++i) position.read[rows.integer(i, 0)] = rows.integer(i, 1);
   position_ = std::move(position);
+  reconnected_ = false;
   return News{{}, missed, false, now};
 }
 
@@ -119,11 +121,12 @@ Result<NodeMessages::News> NodeMessages::read() {
   news.more = rows.rows() == static_cast<int>(options_.most_at_once);
   for (int i = 0; i < rows.rows(); ++i) {
     position_->read[rows.integer(i, 0)] = rows.integer(i, 10);
-    if (rows.boolean(i, 9)) continue;
+    if (rows.boolean(i, 9) && !reconnected_) continue;
     if (auto message = read_message(rows, i)) news.messages.push_back(std::move(*message));
   }
   position_->time = now;
   if (news.more) return news;
+  reconnected_ = false;
   // Forget the ids of messages whose transactions have ended.
   position_->from = std::max(position_->from, settled);
   std::erase_if(position_->read, [&](const auto& entry) { return entry.second < position_->from; });
@@ -132,6 +135,11 @@ Result<NodeMessages::News> NodeMessages::read() {
 
 Result<bool> NodeMessages::wait(milliseconds limit) {
   return STRATA_TRY(connected())->wait_for_notification(limit);
+}
+
+bool NodeMessages::answers() {
+  const auto connection = connected();
+  return connection && (*connection)->query("SELECT 1", Params()).has_value();
 }
 
 // Messages from a restored backup have transaction ids of another database. They are deleted by

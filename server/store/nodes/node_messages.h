@@ -66,10 +66,14 @@ class NodeMessages {
     std::chrono::system_clock::time_point time;  // of the read, by the clock of the database
   };
   // Returns the messages since the last call. The first call returns none, and later calls return
-  // messages that were not visible before. The messages of `self` are left out.
+  // messages that were not visible before. The messages of `self` are left out, except after the
+  // connection broke. The response to a commit of `self` may have been lost as well then, and no
+  // other node reports that change.
   Result<News> read();
   // Returns true if a message may have arrived, and false after `limit`. Blocks.
   Result<bool> wait(std::chrono::milliseconds limit);
+  // Returns whether the database answers now. Blocks.
+  bool answers();
   // Deletes old messages, at most 10 000. Call it about once a minute.
   Result<void> prune();
 
@@ -88,6 +92,7 @@ class NodeMessages {
   const Uuid self_;
   const Options options_;
   std::unique_ptr<PgConnection> connection_;
+  bool reconnected_ = false;  // since the last complete read
   std::optional<Position> position_;
   struct Ended {
     std::chrono::steady_clock::time_point when;

@@ -255,6 +255,28 @@ TEST_F(MessagesOfNodes, a_reader_connects_again_and_continues) {
   EXPECT_EQ(messages[0].kind, NodeMessage::Kind::tool);
 }
 
+TEST_F(MessagesOfNodes, after_an_outage_the_reader_also_gets_the_changes_of_its_own_node) {
+  NodeMessages own_reader{dsn_, b_.id};
+  ASSERT_TRUE(own_reader.read());
+  const Table table = make_table();
+  EXPECT_THAT(read(own_reader), IsEmpty());
+  script(connection_,
+         "SELECT pg_terminate_backend(pid, 60000) FROM pg_stat_activity "
+         "WHERE datname = current_database() AND pid <> pg_backend_pid()");
+  // The effect of a commit whose response was lost.
+  ASSERT_TRUE(write(table, {"bowl"}).sequence);
+  std::vector<NodeMessage> messages;
+  ASSERT_TRUE(wait_until([&] {
+    auto news = own_reader.read();  // the first call may notice the broken connection
+    if (news) messages = news->messages;
+    return news.has_value();
+  }));
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0].kind, NodeMessage::Kind::records);
+  ASSERT_TRUE(write(table, {"lamp"}).sequence);
+  EXPECT_THAT(read(own_reader), IsEmpty()) << "only once";
+}
+
 TEST_F(MessagesOfNodes, a_notification_wakes_the_reader) {
   while (reader_.wait(0ms).value_or(false)) {
   }
