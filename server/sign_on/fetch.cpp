@@ -1,11 +1,10 @@
-#include "core/text/url.h"
 #include "sign_on/fetch.h"
+#include "core/text/url.h"
 
 #include <curl/curl.h>
 
 #include <memory>
 #include <mutex>
-
 
 namespace strata::sign_on {
 namespace {

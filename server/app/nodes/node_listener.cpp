@@ -15,10 +15,15 @@ constexpr milliseconds kReadEvery{1000};
 constexpr milliseconds kStopWithin{100};
 constexpr std::chrono::seconds kPruneEvery{60};
 
+bool is_passing(const Error& error) {
+  return error.code == ErrorCode::unavailable || error.code == ErrorCode::busy;
+}
+
 }  // namespace
 
-NodeListener::NodeListener(std::unique_ptr<store::NodeMessages> messages, Handlers handlers)
-    : messages_(std::move(messages)), handlers_(std::move(handlers)) {
+NodeListener::NodeListener(std::unique_ptr<store::NodeMessages> messages, Handlers handlers,
+                           Options options)
+    : messages_(std::move(messages)), handlers_(std::move(handlers)), options_(options) {
   if (auto begun = read(); !begun) {
     missed_ = fails_ = true;
     log::warning("messages of other nodes cannot be read: " + begun.error().detail);
@@ -58,16 +63,34 @@ Result<void> NodeListener::read() {
 }
 
 bool NodeListener::pass_on() {
-  if (std::exchange(missed_, false)) handlers_.on_missed();
+  if (missed_) {
+    const auto read_again = handlers_.on_missed();
+    if (!read_again && may_try_again(read_again.error())) return false;
+    if (!read_again)
+      log::warning("not everything could be read again: " + read_again.error().detail);
+    missed_ = false;
+    blocked_since_.reset();
+  }
   for (; !waiting_.empty(); waiting_.pop_front()) {
+    if (!pause(milliseconds(0))) return false;
     const Waiting& next = waiting_.front();
     const auto passed = handlers_.on_message(next.message, next.age + (Clock::now() - next.read));
-    if (passed) continue;
-    const ErrorCode code = passed.error().code;
-    if (code == ErrorCode::unavailable || code == ErrorCode::busy) return false;
-    log::warning("a message of another node had no effect: " + passed.error().detail);
+    if (!passed) {
+      if (may_try_again(passed.error())) return false;
+      log::warning("a message of another node had no effect: " + passed.error().detail);
+      if (is_passing(passed.error())) missed_ = true;
+    }
+    blocked_since_.reset();
   }
   return true;
+}
+
+bool NodeListener::may_try_again(const Error& error) {
+  if (!is_passing(error)) return false;
+  const auto now = Clock::now();
+  if (!blocked_since_) blocked_since_ = now;
+  // During an outage, everything waits.
+  return now - *blocked_since_ < options_.give_up_after || !messages_->answers();
 }
 
 // Waits in steps, so that `stop` need not wait long.

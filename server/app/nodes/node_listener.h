@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "core/error.h"
@@ -24,12 +25,21 @@ class NodeListener {
     // `unavailable` or `busy`, the message is passed again later, before all others.
     std::function<Result<void>(const store::NodeMessage& message, std::chrono::nanoseconds age)>
         on_message;
-    // Called if messages may be missing. Everything must then be read again.
-    std::function<void()> on_missed;
+    // Called if messages may be missing. Everything must then be read again. After an error
+    // `unavailable` or `busy`, it is called again later.
+    std::function<Result<void>()> on_missed;
+  };
+  struct Options {
+    // A message that cannot be passed on for this time, while the database answers, is dropped, and
+    // messages are reported as missed. Otherwise a damaged page of one table would hold back all
+    // later messages, such as those about revoked access.
+    std::chrono::milliseconds give_up_after{60'000};
   };
   // Reads the messages from now on. If the database does not answer now, the listener reports
   // missed messages as soon as the database answers.
-  NodeListener(std::unique_ptr<store::NodeMessages> messages, Handlers handlers);
+  NodeListener(std::unique_ptr<store::NodeMessages> messages, Handlers handlers, Options options);
+  NodeListener(std::unique_ptr<store::NodeMessages> messages, Handlers handlers)
+      : NodeListener(std::move(messages), std::move(handlers), Options()) {}
   ~NodeListener() { stop(); }
   void stop();  // waits for a running handler
 
@@ -43,15 +53,19 @@ class NodeListener {
   void run();
   Result<void> read();
   bool pass_on();  // returns false if messages still wait
+  // Returns whether to call a handler again that returned this error.
+  bool may_try_again(const Error& error);
   void wait_for_news();
   bool pause(std::chrono::milliseconds time);  // returns false if the listener stops
 
   const std::unique_ptr<store::NodeMessages> messages_;
   const Handlers handlers_;
+  const Options options_;
   // Used only by the thread of the listener.
   std::deque<Waiting> waiting_;
   bool missed_ = false, more_ = false, fails_ = false;
   Clock::time_point pruned_ = Clock::now();
+  std::optional<Clock::time_point> blocked_since_;  // since when a handler returns errors
 
   std::mutex mutex_;
   std::condition_variable changed_;

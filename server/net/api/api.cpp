@@ -216,8 +216,9 @@ std::unique_ptr<app::NodeListener> Api::listen_to_nodes() {
     return received;
   };
   const auto start_over = [this] {
-    ++metrics().node_messages_missed;
-    node_events_.start_over();
+    auto begun = node_events_.start_over();
+    if (begun) ++metrics().node_messages_missed;
+    return begun;
   };
   return std::make_unique<app::NodeListener>(store_.nodes().messages(options_.lease->node().id),
                                              app::NodeListener::Handlers{receive, start_over});

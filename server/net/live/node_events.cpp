@@ -1,13 +1,16 @@
 #include "net/live/node_events.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "core/log.h"
 #include "domain/scene/tool.h"
 #include "net/auth/auth.h"
-#include "net/auth/session_recheck.h"
 #include "net/live/close_codes.h"
 #include "net/live/comment_events.h"
 #include "store/content/projects.h"
 #include "store/content/tools.h"
+#include "store/tables/records.h"
 #include "store/tables/tables.h"
 
 namespace strata::net {
@@ -42,17 +45,14 @@ bool is_gone(const Error& error) { return error.code == ErrorCode::not_found; }
 }  // namespace
 
 Result<void> NodeEvents::receive(const NodeMessage& message) {
-  if (message.kind == NodeMessage::Kind::access) {
-    check_access(message.user);
-    return {};
-  }
+  if (message.kind == NodeMessage::Kind::access) return check_access(message.user);
   for (const std::int64_t id : message.subjects) {
     switch (message.kind) {
       case NodeMessage::Kind::records: STRATA_TRY(receive_records(message, TableId(id))); break;
       case NodeMessage::Kind::table: STRATA_TRY(receive_table(message, TableId(id))); break;
       case NodeMessage::Kind::comment: STRATA_TRY(receive_comment(message, CommentId(id))); break;
       case NodeMessage::Kind::tool: STRATA_TRY(receive_tool(message, ToolId(id))); break;
-      case NodeMessage::Kind::kiosk: check_access(kiosk_name(KioskId(id))); break;
+      case NodeMessage::Kind::kiosk: STRATA_TRY(check_access(kiosk_name(KioskId(id)))); break;
       case NodeMessage::Kind::view:
         tell_part(sockets_, message, id, &protocol::ViewEvent::view);
         break;
@@ -67,9 +67,15 @@ Result<void> NodeEvents::receive(const NodeMessage& message) {
 
 Result<void> NodeEvents::receive_records(const NodeMessage& message, TableId table) {
   const bool is_shown = message.project && sockets_.has_project(*message.project);
-  const auto change = store_.tables().change_of(table, message.sequence.value_or(0),
-                                                is_shown ? kMaxRecordEvents : 0);
+  auto change = store_.tables().change_of(table, message.sequence.value_or(0),
+                                          is_shown ? kMaxRecordEvents : 0);
   if (!change) return is_gone(change.error()) ? Result<void>{} : tl::unexpected(change.error());
+  // This node may have deleted some of these records since. Their keys must not be painted again.
+  if (!change->created.empty()) {
+    const auto gone = STRATA_TRY(store_.records().missing(table, change->created));
+    std::erase_if(change->created,
+                  [&](const std::int64_t key) { return std::ranges::count(gone, key) > 0; });
+  }
   tables_.records_changed(*change, message.user);
   return {};
 }
@@ -113,24 +119,35 @@ Result<void> NodeEvents::receive_tool(const NodeMessage& message, ToolId id) {
 }
 
 // Only the connections that lose their access, or whose role changes, are closed.
-void NodeEvents::check_access(const std::string& user) {
+Result<void> NodeEvents::check_access(const std::string& user) {
   auth_.forget();
+  std::optional<Error> unknown;
   sockets_.close_unwelcome(
       user,
-      [this](const std::string& secret, ProjectId project_id, Role role) {
-        return is_still_welcome(auth_, secret, project_id, role);
+      [&](const std::string& secret, ProjectId project_id, Role role) {
+        const auto who = auth_.identify_token(secret);
+        if (!who) unknown = who.error();
+        return !who || (*who && (*who)->roles.in(project_id) == role);
       },
       kClosePolicy, "your access was changed");
+  if (unknown) return tl::unexpected(std::move(*unknown));
+  return {};
 }
 
-void NodeEvents::start_over() {
-  log::warning("changes at other nodes may be missing, so all clients connect again");
+Result<void> NodeEvents::start_over() {
   auth_.forget();
-  if (const auto projects = store_.projects().all())
-    for (const Project& project : *projects)
-      if (const auto tables = store_.tables().of_project(project.id, Role::owner))
-        for (const Table& table : *tables) rooms_.records_changed(table.id);
+  std::vector<TableId> tables;
+  const auto projects = STRATA_TRY(store_.projects().all());
+  for (const Project& project : projects) {
+    const auto found = store_.tables().of_project(project.id, Role::owner);
+    if (!found && !is_gone(found.error())) return tl::unexpected(found.error());
+    if (!found) continue;
+    for (const Table& table : *found) tables.push_back(table.id);
+  }
+  log::warning("changes at other nodes may be missing, so all clients connect again");
+  for (const TableId table : tables) rooms_.records_changed(table);
   sockets_.close_all(kCloseGoingAway, "changes at other nodes may be missing");
+  return {};
 }
 
 }  // namespace strata::net

@@ -22,15 +22,17 @@ class NodeEvents {
 
   // Returns an error if the subject cannot be read. Does nothing if it no longer exists. Blocks.
   Result<void> receive(const store::NodeMessage& message);
-  // Makes all clients of this node connect again and read everything again. Blocks.
-  void start_over();
+  // Makes all clients of this node connect again and read everything again. Returns an error, and
+  // closes no connection, if the tables cannot be listed. Blocks.
+  Result<void> start_over();
 
  private:
   Result<void> receive_records(const store::NodeMessage& message, TableId table);
   Result<void> receive_table(const store::NodeMessage& message, TableId table);
   Result<void> receive_comment(const store::NodeMessage& message, CommentId comment);
   Result<void> receive_tool(const store::NodeMessage& message, ToolId tool);
-  void check_access(const std::string& user);
+  // Returns an error if the rights of a connected user cannot be read.
+  Result<void> check_access(const std::string& user);
 
   store::Store& store_;
   room::Rooms& rooms_;

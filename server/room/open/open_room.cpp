@@ -323,8 +323,9 @@ void OpenRoom::saving_continued() {
 void OpenRoom::deposed(const Error& reason) {
   if (moved_) return;
   const bool is_gone = reason.code == ErrorCode::not_found;
-  log::warning((is_gone ? "another server has deleted model " : "another server has claimed model ") +
-               to_string(model_id_) + ", so this server closes it");
+  log::warning(
+      (is_gone ? "another server has deleted model " : "another server has claimed model ") +
+      to_string(model_id_) + ", so this server closes it");
   // Clients of a deleted model connect again, and then learn that it is gone.
   const Error why = is_gone ? moved_to({}) : reason;
   tell_moved(why);

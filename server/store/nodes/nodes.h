@@ -92,8 +92,8 @@ class Nodes {
   Result<void> leave(const Uuid& node);  // removes the node; its models have no owner then
   Result<void> forget_ended();           // removes nodes whose lease ended `kForgetAfter` ago
 
-  // Opens the connections of the store again, except the one of the lease. Call it when the node has
-  // a lease again, before the database is asked who has the models (Pool::drop_connections).
+  // Opens the connections of the store again, except the one of the lease. Call it when the node
+  // has a lease again, before the database is asked who has the models (Pool::drop_connections).
   void drop_connections();
 
   // --- Messages between nodes (store/nodes/node_messages.h)

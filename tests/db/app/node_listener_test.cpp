@@ -57,7 +57,10 @@ TEST_F(ListenerOfNode, a_message_waits_while_its_subject_cannot_be_read) {
                              return fail(ErrorCode::not_found, "Not found", "It no longer exists.");
                            return {};
                          },
-                         [&] { ++missed_; }});
+                         [&]() -> Result<void> {
+                           ++missed_;
+                           return {};
+                         }});
   for (const char* name : {"ada", "bob", "cleo"}) make_user(name);
   ASSERT_TRUE(wait_for([&] { return received_.size() >= 3; }));
   listener.stop();
@@ -74,7 +77,10 @@ TEST_F(ListenerOfNode, a_listener_survives_its_connection) {
                            changed_.notify_all();
                            return {};
                          },
-                         [&] { ++missed_; }});
+                         [&]() -> Result<void> {
+                           ++missed_;
+                           return {};
+                         }});
   make_user("ada");
   ASSERT_TRUE(wait_for([&] { return received_.size() == 1; }));
   change(
@@ -92,12 +98,39 @@ TEST_F(ListenerOfNode, missed_messages_are_reported) {
   NodeListener listener(
       messages(options),
       {[](const NodeMessage&, std::chrono::nanoseconds) -> Result<void> { return {}; },
-       [&] {
+       [&]() -> Result<void> {
          const std::lock_guard lock(mutex_);
          ++missed_;
          changed_.notify_all();
+         if (missed_ == 1) return tl::unexpected(store::unavailable("a test"));
+         return {};
        }});
-  ASSERT_TRUE(wait_for([&] { return missed_ > 0; }));
+  ASSERT_TRUE(wait_for([&] { return missed_ > 1; })) << "it is reported again after a failure";
+}
+
+TEST_F(ListenerOfNode, a_message_that_can_never_be_passed_on_does_not_hold_back_the_others) {
+  NodeListener::Options options;
+  options.give_up_after = std::chrono::milliseconds(0);
+  NodeListener listener(messages(),
+                        {[&](const NodeMessage& message, std::chrono::nanoseconds) -> Result<void> {
+                           const std::lock_guard lock(mutex_);
+                           if (message.user == "ada")
+                             return tl::unexpected(store::unavailable("a damaged page"));
+                           received_.push_back(message.user);
+                           changed_.notify_all();
+                           return {};
+                         },
+                         [&]() -> Result<void> {
+                           const std::lock_guard lock(mutex_);
+                           ++missed_;
+                           changed_.notify_all();
+                           return {};
+                         }},
+                        options);
+  for (const char* name : {"ada", "bob"}) make_user(name);
+  ASSERT_TRUE(wait_for([&] { return received_.size() == 1 && missed_ == 1; }));
+  listener.stop();
+  EXPECT_THAT(received_, ::testing::ElementsAre("bob"));
 }
 
 }  // namespace
