@@ -63,7 +63,8 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
   const auto link =
       store.tokens().create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
   if (!link) return tl::unexpected(link.error());
-  std::cout << "Link for " << person.name << " to choose a password, valid for 7 days:\n"
+  std::cout << "Link for " << person.name
+            << " to choose a password; the link is valid for 7 days:\n"
             << options.url << "/join#" << link->secret << std::endl;
   return {};
 }
@@ -243,7 +244,8 @@ Command add_user(CLI::App& app) {
   works["list"] = list_people;
   auto* role = add_named("role", "Change the role of an account", changing(set_role));
   role->add_option("role", options->role,
-                   "guest, viewer, annotator, curator or administrator; in a project also none")
+                   "guest, viewer, annotator, curator or administrator; with --project: viewer, "
+                   "annotator, curator or none, which removes the role")
       ->required()
       ->check(CLI::IsMember({"guest", "viewer", "annotator", "curator", "administrator", "none"}));
   role->add_option("--project", options->project,

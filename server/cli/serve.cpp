@@ -223,9 +223,10 @@ void add_log_options(CLI::App& command, ServeOptions& options) {
 void add_archive_options(CLI::App& command, ServeOptions& options) {
   auto* archive =
       command
-          .add_option("--archive", options.data.cluster.archive,
-                      "Folder for copies of the private database and all changes since then "
-                      "(docs/how-to/back-up-and-restore.md)")
+          .add_option(
+              "--archive", options.data.cluster.archive,
+              "Folder for copies of the private database, and for the changes after each copy "
+              "(docs/how-to/back-up-and-restore.md)")
           ->envname("STRATA_ARCHIVE");
   command
       .add_option("--archive-copy-days", options.archive_copy_days,

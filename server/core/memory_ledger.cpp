@@ -24,7 +24,7 @@ MemoryLedger::Share& MemoryLedger::Share::operator=(Share&& other) noexcept {
 }
 
 void MemoryLedger::Share::recount(std::uint64_t bytes) {
-  ledger_->used_bytes_ += bytes - bytes_;  // wraps modulo 2^64, so the sum also decreases
+  ledger_->used_bytes_ += bytes - bytes_;  // also correct if `bytes` is less: modulo 2^64
   bytes_ = bytes;
 }
 

@@ -85,7 +85,8 @@ Result<Client::Endpoints> Client::load_endpoints_locked() const {
   found.keys = text_of(document, "jwks_uri");
   found.userinfo = text_of(document, "userinfo_endpoint");
   for (const std::string* each : {&found.authorization, &found.token, &found.keys})
-    if (!is_safe_url(*each)) return broken(url + " has an address that is missing or not https.");
+    if (!is_safe_url(*each))
+      return broken(url + ": an address is missing or does not begin with https.");
   if (provider_.userinfo && !is_safe_url(found.userinfo))
     return broken(url + " has no address for user information.");
   constexpr const char* kMethods = "token_endpoint_auth_methods_supported";

@@ -60,7 +60,7 @@ constexpr std::array kKinds{
     ProblemKind{internal, 500, "The server has a fault, or stored data is damaged.",
                 "Report the error with its time. The server's log has the details."},
     ProblemKind{damaged, 500, "A stored file is missing, or its content has changed.",
-                "Tell an administrator. `strata files check` lists the files."},
+                "Inform an administrator. `strata files check` lists the files."},
     ProblemKind{not_implemented, 501, "The server does not support this part of HTTP.",
                 "Send the request in a different form."},
     ProblemKind{bad_gateway, 502, "Another program sent an invalid response.",

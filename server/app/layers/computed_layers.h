@@ -11,9 +11,9 @@
 
 namespace strata::app {
 
-// Completes the recipe for the model. Refuses (invalid, at fields of `compute`) properties that
-// the model does not have, and a missing model for comparison. Runs before the job, so users see
-// mistakes immediately.
+// Completes the recipe for the model. Returns `invalid` with a field of `compute` if the model does
+// not have a property of the recipe, or if the model for comparison does not exist. Runs before the
+// job, so users see mistakes immediately.
 Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe recipe,
                                        const Model& model);
 

@@ -80,7 +80,7 @@ class Reader {
                     [](const auto& cell) { return cell.empty(); }))
       return {};
     if (out_.rows.size() == limits_.rows)
-      return refuse("A text can have at most " + std::to_string(limits_.rows) + " rows");
+      return refuse("A CSV text can have at most " + std::to_string(limits_.rows) + " rows");
     out_.rows.push_back(std::move(row));
     return {};
   }

@@ -11,8 +11,8 @@
 namespace strata::mesh {
 
 // The distance, in texels, between the border of a chart's box and the chart. A chart also touches
-// the texels within this distance. Rounding, the steps of UVs and the grid of a GPU move a point by
-// a smaller distance. Texels outside a mask therefore stay empty in every quarter turn.
+// the texels within this distance. Rounding, and the precision of UVs and of a GPU, can move a
+// point, but less than this. Texels outside a mask therefore stay empty in every quarter turn.
 constexpr double kNear = 1.0 / 256;
 
 // The texels that a chart touches, as runs in each row.

@@ -11,7 +11,8 @@ namespace strata::mesh {
 // - At an edge with more than two triangles, the triangles are joined in pairs that agree in
 //   direction. Pairs without loose fins come first, and flatter pairs come before less flat pairs.
 //   Slivers without area on an edge of two other triangles are dropped beforehand.
-// - Pieces of the surface follow the orientation of their majority. Closed pieces are turned
+// - Each piece of the surface gets the orientation of most of its triangles. Closed pieces are
+// turned
 //   outward, as determined by their signed volume, unless they are hollows. A hollow is inside the
 //   box of a larger closed piece, and the file orients it inward.
 // - A piece that cannot be oriented consistently, such as a Möbius strip, is cut.

@@ -42,7 +42,7 @@ struct NodeGauges {
 };
 
 // Values of a server with an archive (store/cluster/archive_keeper.h). Times are in seconds since
-// 1970, or 0 if there is none yet.
+// 1970, or 0 before the first event.
 struct ArchiveGauges {
   double archived_s = 0, copied_s = 0;
   std::uint64_t failed_segments = 0, failed_copies = 0;

@@ -63,8 +63,8 @@ void for_each_texel_of(const TileData& tile, TileAddress address, const mesh::Su
 // are slow to decode. Returns null for longer types.
 const double* values_of_bits(ValueType type);
 
-// Calls visit(slot, texel in the block, bits, value) for each texel of for_each_texel_of with a
-// finite value. An imported raster may contain other values.
+// Calls visit(slot, texel in the block, bits, value) for each texel that for_each_texel_of visits,
+// if its value is finite. An imported raster may contain other values.
 template <class Visit>
 void for_each_value(const TileData& tile, TileAddress address, ValueType type,
                     const mesh::SurfaceMap& map, const TexelSelection* within, Visit&& visit) {

@@ -16,7 +16,7 @@ namespace strata::query {
 class TileRows {
  public:
   TileRows(const Layer& layer, const TileMap& tiles);  // keeps a reference to `tiles`
-  // Both spans have `resolution` entries. Invalid texels have bits 0.
+  // Both spans have `resolution` entries. For invalid texels, `bits` contains 0.
   void read(int file_row, std::span<std::uint32_t> bits, std::span<std::uint8_t> valid) const;
 
  private:

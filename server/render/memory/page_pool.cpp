@@ -104,7 +104,7 @@ Result<void> PagePool::add_chunk() {
   const auto number = static_cast<std::size_t>(unused - chunks_.begin());
   if (number >= kMaxChunks) {
     return fail(ErrorCode::out_of_memory, "GPU memory exhausted",
-                "No more than 16 texture chunks of one value width can be used.");
+                "The server can use at most 16 texture chunks for each width of values.");
   }
   const int present =
       std::accumulate(chunks_.begin(), chunks_.end(), 0,

@@ -182,7 +182,7 @@ void EditPipeline::on_journal(bool verifying, const Result<store::JournalState>&
   asking_ = false;
   if (closed_ || std::exchange(lookup_outdated_, false)) return;
   journal_away_ = !state;
-  // While the room was suspended, any node could delete the model, and this room was not told.
+  // While the room was suspended, any node could delete the model, and this room did not notice.
   if (!state && compares_ && state.error().code == ErrorCode::not_found)
     return host_->deposed(state.error());
   if (!state) {

@@ -49,7 +49,7 @@ Error explained(const ArchiveFolder& archive, const RestorePlan& plan, const fs:
   if (const auto name = after_words(log, kNotRestored); !name.empty())
     return {ErrorCode::invalid, "Archive damaged",
             "The segment " + name.substr(0, name.find('"')) + " in " + archive.wal().string() +
-                " cannot be read. Restore an earlier moment with --at.",
+                " cannot be read. Restore an earlier state with --at.",
             "--archive"};
   if (!has_words(log, kTooEarlyEnd)) return problem;
   std::string last = after_words(log, kLastChange);
@@ -57,7 +57,7 @@ Error explained(const ArchiveFolder& archive, const RestorePlan& plan, const fs:
   if (const auto missing = missing_segment(archive, plan.copy))
     return {ErrorCode::invalid, "Archive incomplete",
             "The segment " + wal_name(*missing) + " is missing in " + archive.wal().string() +
-                ". The last change before it is from " + last + ". Restore an earlier moment.",
+                ". The last change before it is from " + last + ". Restore an earlier state.",
             "--at"};
   return {ErrorCode::invalid, "After the last archived change",
           "The last archived change is from " + last +
@@ -135,7 +135,7 @@ Result<RestorePlan> plan_restore(
     if (const auto missing = missing_segment(archive, plan.copy))
       return fail(ErrorCode::invalid, "Archive incomplete",
                   "The segment " + wal_name(*missing) + " is missing in " + archive.wal().string() +
-                      ". Restore an earlier moment with --at.",
+                      ". Restore an earlier state with --at.",
                   "--archive");
   return plan;
 }

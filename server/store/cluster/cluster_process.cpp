@@ -123,7 +123,7 @@ bool end_postmaster(const fs::path& pgdata, std::chrono::seconds patience) {
   if (pid <= 1) return true;
   std::error_code error;
   const fs::path data = fs::canonical(pgdata, error);
-  // A later process with the same number does not have the data folder as its working directory.
+  // A later process can have the same process id, but not the data folder as working directory.
   const fs::path place = "/proc/" + std::to_string(pid) + "/cwd";
   const auto ended = [&] {
     std::error_code gone;

@@ -34,7 +34,7 @@ struct Schema {
 
   std::int64_t version() const;  // number of the newest migration, or 0
   // Returns the smallest N for which every migration after N is readable from N or an earlier one.
-  // A program can use the database if its newest migration is N or a later one.
+  // A program whose newest migration is N or a later one can use the database.
   std::int64_t readable_from() const;
 };
 

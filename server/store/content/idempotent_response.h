@@ -17,8 +17,8 @@ struct IdempotentResponse {
   std::string key;  // if empty, no response is stored
   std::function<nlohmann::json(const Effect&...)> make;
   // The user who made the request, for the activity of the project. If it is empty, the activity
-  // does not list changes, and lists creations and deletions without a name. (Journal entries have
-  // a separate user name.)
+  // omits changes, and shows creations and deletions without the name of a user. (Journal entries
+  // have a separate user name.)
   std::string user{};
   // The stored job that does this work, or 0 without a job. The same transaction marks the job as
   // done, with the result of `make` as its result.

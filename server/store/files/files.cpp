@@ -385,7 +385,7 @@ Result<Files::Moved> Files::move(Direction direction, Progress& progress) {
       return {};
     }
     const auto done = move_one(row, into, progress);
-    // One file that is lost does not keep the others. A file may be deleted meanwhile.
+    // One lost file does not stop the move. Users may delete files during the move.
     if (!done && done.error().code == ErrorCode::damaged) {
       damaged.push_back(row.hash);
       return {};

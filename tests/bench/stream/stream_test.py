@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """stream_test.py STRATA_BENCH STRATA: `strata-bench stream --quick` measures a real server, and its
-figures can be drawn. The test checks which figures exist and which are zero, but no times."""
+figures can be drawn. The test checks which numbers exist and which are zero. It does not check times."""
 import json
 import os
 import subprocess

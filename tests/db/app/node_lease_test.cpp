@@ -54,7 +54,7 @@ TEST_F(LeaseOfNode, rooms_save_nothing_while_a_renewal_hangs_and_save_again_afte
   ASSERT_TRUE(wait_until([&] { return (open = rooms_->open("pot", Role::owner)).has_value(); }));
   {
     const test::Hang hang(test::shared_cluster());
-    // The database does not respond, so only the node's own clock can have ended the lease.
+    // The database does not respond, so only the node's own clock shows the end of the lease.
     ASSERT_TRUE(wait_until([&] { return !lease->holds() && !opens(); }));
     EXPECT_EQ(rooms_->open("pot", Role::owner).error().code, ErrorCode::unavailable);
     EXPECT_EQ(rooms_->open_rooms(), 1u);

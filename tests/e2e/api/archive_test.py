@@ -62,7 +62,7 @@ def contents(server):
 
 
 def counts(server):
-    """Returns what `strata restore` reports about the site."""
+    """Returns the counts that `strata restore` also reports: projects, models and edits."""
     projects, models, edits = (
         int(server.sql(f"SELECT count(*) FROM {table}"))
         for table in ("projects", "models", "edits")

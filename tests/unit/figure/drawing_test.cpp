@@ -55,8 +55,8 @@ TEST(Plane, AxesAreAFrameThatLooksAsItsNameSays) {
         EXPECT_EQ(plane.up, above);
       }
     }
-  // The model is upside down, rotated about the right axis of the drawing. The front then shows the
-  // former back upside down.
+  // The model is upside down, rotated about the right axis of the drawing. The front view then
+  // shows the back of the model upside down.
   EXPECT_EQ(plane_from(Direction::front, "-z").into, glm::dvec3(0, -1, 0));
   EXPECT_EQ(plane_from(Direction::front, "-z").right, glm::dvec3(1, 0, 0));
   EXPECT_EQ(plane_from(Direction::top, "-y").into, glm::dvec3(0, 1, 0));

@@ -133,7 +133,7 @@ function linkIn(found: string): string {
   }
 }
 
-/** The comments that a user has read: all up to `upto`, and further ones by thread. */
+/** The comments that a user has read: all up to `upto`, and in a thread those up to its own mark. */
 export interface ReadMarks {
   upto: number;
   threads: Record<string, number>;

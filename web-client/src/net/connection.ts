@@ -1,6 +1,6 @@
 // The WebSocket connection of one open model. It sends hello, keeps the latest camera, resends
-// unsaved changes, and reconnects automatically. Tests can replace the socket by a fake, because
-// this file does not use the DOM.
+// unsaved changes, and reconnects automatically. Tests run it without a browser and with
+// a fake socket, because this file does not use the DOM.
 
 import { newId } from "../core/ids";
 import type { CameraMessage } from "../math/camera";

@@ -591,7 +591,7 @@ export const texts = {
     reach: "Extent",
     connected: "Same value",
     connected_hint:
-      "The connected area around this point that has the same value as the point, or no value if the point has none",
+      "The connected area around this point with the same value. If the point has no value: the connected area without values",
     island: "Whole piece",
     island_hint: "The whole connected piece of the object",
     changed: (area: string) => `${area} changed.`,
@@ -956,7 +956,7 @@ export const texts = {
     into: "Add files to",
     pattern: "File name pattern",
     pattern_hint:
-      "Each {word} matches one or more characters. The word with the name of the column identifies the record.",
+      "Each {word} matches one or more characters. The text in the place of the column’s name identifies the record.",
     matched: (n: number) => `${count(n, "file matches", "files match")} a record`,
     unmatched: (n: number) => `${count(n, "file has", "files have")} no match`,
     duplicates: (n: number) => `${count(n, "file is", "files are")} already attached`,
@@ -1753,7 +1753,7 @@ export const texts = {
     phones: "QR code for visitors' phones",
     phones_hint:
       "Visitors can open the tour on their own phones. They see what this screen shows, until you switch this off or revoke the link.",
-    phones_of: (name: string) => `QR code for phones on ${name}`,
+    phones_of: (name: string) => `QR code for visitors’ phones on the screen “${name}”`,
     make: "Create link",
     link: (name: string) => `Link for “${name}”`,
     link_lead:
@@ -1844,7 +1844,7 @@ export const texts = {
       },
       share: {
         title: "Share and get help",
-        text: "Send the address of this page to share the model. Use View → Views to save a view with its own link. Help lists all keys and gestures, and can start this tour again.",
+        text: "Send the address of this page to share the model. Use View → Views to save a view with its own link. Help lists all keys and gestures. You can also start this tour again there.",
       },
     },
   },

@@ -1,4 +1,4 @@
-// English texts of the parts of the page that are loaded later: see index.ts.
+// English texts for the parts of the page that the browser loads later (index.ts).
 
 import { formatCount } from "../core/locale";
 import { count, plural } from "./count";

@@ -114,7 +114,7 @@ export class Appearance {
     this.put(await this.changeLook(look, { name }));
   }
 
-  /** Moves the surface image to `index` in the list, which is bottom to top. */
+  /** Moves the surface image to `index` in the list, which is ordered from bottom to top. */
   async move(look: Look, index: number): Promise<void> {
     await reorder(this.looks, look, index, {
       show: (looks) => this.takeLooks(looks),
