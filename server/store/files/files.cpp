@@ -27,6 +27,7 @@ constexpr int kUsersShown = 5;
 constexpr std::size_t kDamagedShown = 20;
 constexpr std::int64_t kMaxInMemory = 64 << 20;  // larger content goes through a temporary file
 constexpr std::chrono::hours kSuperfluousAfter{24};
+constexpr std::chrono::hours kUploadsEndWithin{24};
 
 // SQL: the content of the blob `b` must be read from its file.
 constexpr auto kNeedsFile = sql("b.is_outside AND b.removing IS NULL AND NOT (", kIsUnused, ")");
@@ -200,7 +201,9 @@ Result<bool> Files::sweep(std::chrono::seconds keep, std::chrono::seconds rest,
   if (!is_open()) return false;
   const bool owns = STRATA_TRY(owns_files());
   if (!owns) return false;
-  STRATA_TRY(blobs_.files()->remove_unfinished(keep));
+  // `keep` may be shorter than an upload takes.
+  STRATA_TRY(
+      blobs_.files()->remove_unfinished(std::max<std::chrono::seconds>(keep, kUploadsEndWithin)));
   // Skip rows that others have locked, so that this transaction waits for nobody.
   STRATA_TRY(pool_.write([&](PgConnection& connection) -> Result<void> {
     STRATA_TRY(connection.query(

@@ -474,6 +474,7 @@ Result<JournalMerger::Done> JournalMerger::merge(ModelId model, std::int64_t epo
     const auto [since, is_first] = since_packed_.try_emplace(layer, 0);
     since->second += revisions;
     if (!is_first && since->second < kRevisionsUntilCount) continue;
+    since->second = kRevisionsUntilCount;  // if packing fails, the next merge tries again
     done.revisions += STRATA_TRY(pack_layer(claim, layer, plan.through, go_on));
     since->second = 0;
   }
