@@ -147,7 +147,7 @@ def test_an_interrupted_upgrade_leaves_the_old_database(server, story):
 
 def test_the_site_continues_with_the_new_version(server, story):
     done = upgrade(server, "--apply")
-    assert done.returncode == 0 and "is now of PostgreSQL 17" in done.stdout, done
+    assert done.returncode == 0 and "now uses PostgreSQL 17" in done.stdout, done
     assert version_of(server) == 17 and version_of(server, "postgres-15-before-upgrade") == 15
     assert "upgrading" not in os.listdir(server.data)
     server.versions = NEW
