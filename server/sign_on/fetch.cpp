@@ -1,10 +1,11 @@
 #include "sign_on/fetch.h"
-#include "core/text/url.h"
 
 #include <curl/curl.h>
 
 #include <memory>
 #include <mutex>
+
+#include "core/text/url.h"
 
 namespace strata::sign_on {
 namespace {

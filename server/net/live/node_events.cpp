@@ -5,7 +5,7 @@
 
 #include "core/log.h"
 #include "domain/scene/tool.h"
-#include "net/auth/auth.h"
+#include "net/auth/session_recheck.h"
 #include "net/live/close_codes.h"
 #include "net/live/comment_events.h"
 #include "store/content/projects.h"
@@ -125,9 +125,9 @@ Result<void> NodeEvents::check_access(const std::string& user) {
   sockets_.close_unwelcome(
       user,
       [&](const std::string& secret, ProjectId project_id, Role role) {
-        const auto who = auth_.identify_token(secret);
-        if (!who) unknown = who.error();
-        return !who || (*who && (*who)->roles.in(project_id) == role);
+        const auto welcome = is_welcome(auth_, secret, project_id, role);
+        if (!welcome) unknown = welcome.error();
+        return welcome.value_or(true);
       },
       kClosePolicy, "your access was changed");
   if (unknown) return tl::unexpected(std::move(*unknown));

@@ -38,6 +38,11 @@ tl::unexpected<Error> damaged_rows() {
               "The stored content is incomplete. Restore the database from a backup.");
 }
 
+tl::unexpected<Error> deleted_during_read() {
+  return fail(ErrorCode::not_found, "Not found",
+              "Somebody deleted the file while the server was reading it.");
+}
+
 }  // namespace
 
 struct Blobs::Place {
@@ -132,9 +137,7 @@ Result<std::optional<Blobs::Place>> Blobs::find(Bytes sha256) {
 
 Result<std::vector<std::uint8_t>> Blobs::read(Bytes sha256) {
   const auto place = STRATA_TRY(find(sha256));
-  if (!place)
-    return fail(ErrorCode::not_found, "Not found",
-                "Somebody deleted the file while the server was reading it.");
+  if (!place) return deleted_during_read();
   std::vector<std::uint8_t> content;
   content.reserve(place->bytes);
   if (!place->is_outside) {
@@ -175,9 +178,7 @@ Result<void> Blobs::stream(Bytes sha256, std::uint64_t begin, std::uint64_t end,
     if (done) return {};
     const auto now = STRATA_TRY(find(sha256));
     if (now && now->is_outside != place->is_outside && moves < kMaxMoves) continue;
-    if (!now)
-      return fail(ErrorCode::not_found, "Not found",
-                  "Somebody deleted the file while the server was reading it.");
+    if (!now) return deleted_during_read();
     if (!place->is_outside) return damaged_rows();
     ++faults_.missing;
     const std::string name = file_name_of(sha256_of(sha256));
