@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <functional>
 #include <map>
 #include <random>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "db/journal_painter.h"
@@ -83,6 +86,10 @@ class Painted {
     for (const char* user : {"Ada", "Ben", "Cleo"}) end_stroke(user);
   }
 
+  // Called during an undo or redo, between two calls of the store. The merger can run there.
+  enum class TurnStep { has_edits, has_tiles, is_computed };
+  std::function<void(TurnStep)> in_turn;
+
   // Undoes the newest edit of the user, or redoes the last undo, as a room does.
   bool turn(std::size_t index, const std::string& user, bool redoes) {
     const Layer& layer = layers_[index];
@@ -90,9 +97,11 @@ class Painted {
     const auto edits = redoes ? journal.redoable(layer.id, user).value()
                               : journal.undoable(layer.id, user).value();
     if (edits.empty()) return false;
+    if (in_turn) in_turn(TurnStep::has_edits);
     auto entry = this->entry(layer, redoes ? "redo" : "undo", user, random_uuid());
     Content& content = contents_[layer.id];
     const auto written = journal.written_by(layer, edits).value();
+    if (in_turn) in_turn(TurnStep::has_tiles);
     for (const auto& [tile, texels] : written) {
       const TileData before = content.contains(tile) ? content.at(tile) : TileData(layer.type);
       std::optional<TileResolver> resolver;
@@ -116,6 +125,7 @@ class Painted {
       if (known.layer == layer.id && known.user == user && known.stroke == last.stroke &&
           known.undone_by == last.undone_by)
         known.undone_by = redoes ? 0 : entry.sequence;
+    if (in_turn) in_turn(TurnStep::is_computed);
     submit(std::move(entry), layer, {});
     return true;
   }
@@ -188,8 +198,12 @@ class Painted {
     return merger.merge(model_, epoch_, ended_before, [] { return true; });
   }
   Clock::time_point time() const { return kBegin + sequence_ * 1s; }
+  // Of the newest saved edit. May be called on any thread.
+  Clock::time_point time_of_saved() const { return kBegin + saved_.load() * 1s; }
   std::int64_t sequence() const { return sequence_; }
   std::int64_t epoch() const { return epoch_; }
+  // Claims the model again, as another server would. Later edits have the new epoch.
+  void claim_again() { epoch_ = store_.nodes().begin_epoch(model_).value(); }
 
  private:
   inline static const Clock::time_point kBegin = Clock::now() - 24h;
@@ -303,16 +317,18 @@ class Painted {
     if (known) known_.push_back(std::move(*known));
     const auto saved = save(writer_, std::move(entry));
     ASSERT_TRUE(saved) << saved.error().detail;
+    saved_ = sequence_;
   }
 
   Store& store_;
   const ModelId model_;
-  const std::int64_t epoch_;
+  std::int64_t epoch_;
   std::mt19937 random_;
   std::string user_ = "Ada";
   JournalWriter writer_;
   std::vector<Layer> layers_;
   std::int64_t sequence_ = 0;
+  std::atomic<std::int64_t> saved_ = 0;     // the newest sequence that the journal has
   std::map<std::string, OpenStroke> open_;  // by user
   std::vector<KnownEdit> known_;            // without undos and redos
   std::map<std::int64_t, Uuid> stroke_of_;  // of every edit
@@ -600,6 +616,74 @@ TEST_F(Merger, a_merge_that_is_cut_off_changes_nothing) {
   check_all(painted);
   painted.paint(40);
   check_all(painted, 4);
+}
+
+// A room reads the edits of a stroke, computes an undo or redo of them and saves it. The merger may
+// replace these edits after each of these steps.
+TEST_F(Merger, an_undo_is_complete_if_its_edits_are_merged_in_the_meantime) {
+  using enum Painted::TurnStep;
+  unsigned seed = 20;
+  for (const auto when : {has_edits, has_tiles, is_computed}) {
+    const Model model = test::make_model(*store_, "pot " + std::to_string(seed));
+    Painted painted(*store_, model.id, ++seed);
+    std::int64_t merged = 0;
+    painted.in_turn = [&](Painted::TurnStep step) {
+      if (step != when) return;
+      const auto done = painted.merge(merger_, painted.time() + 1h);
+      ASSERT_TRUE(done) << done.error().detail;
+      merged += done->edits;
+    };
+    for (int i = 0; i < 16; ++i) {
+      painted.paint(15);
+      painted.end_all();
+      painted.turn(i % 2, std::vector<std::string>{"Ada", "Ben", "Cleo"}[i % 3], i % 4 == 3);
+      if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(merged, 0);
+    check_all(painted);
+    if (HasFatalFailure()) return;
+  }
+}
+
+// The merger runs on its own thread all the time, also while another server claims the model.
+TEST_F(Merger, people_paint_while_the_journal_is_merged) {
+  Painted painted(*store_, model_.id, 9);
+  std::atomic<std::int64_t> epoch = painted.epoch();
+  std::atomic<bool> ends = false;
+  std::atomic<int> merges = 0, deposed = 0;
+  std::vector<std::string> problems;
+  std::thread merging([&] {
+    while (!ends) {
+      const auto done = merger_.merge(model_.id, epoch, painted.time_of_saved() - 20s,
+                                      [&] { return !ends.load(); });
+      if (done)
+        merges += done->edits > 0 ? 1 : 0;
+      else if (done.error().code == ErrorCode::moved)
+        ++deposed;
+      else if (done.error().code != ErrorCode::conflict)  // of an undo at the same time
+        problems.push_back(done.error().detail);
+    }
+  });
+  // Paints until the condition is true. The limit ends a test whose merger does nothing.
+  const auto paint_until = [&](const auto& condition) {
+    for (int i = 0; i < 100 && !condition() && !HasFatalFailure(); ++i) painted.paint(20);
+  };
+  paint_until([&] { return merges >= 3; });
+  painted.check_states(8);
+  painted.claim_again();
+  paint_until([&] { return deposed > 0; });
+  const int of_first_claim = merges;
+  epoch = painted.epoch();
+  paint_until([&] { return merges >= of_first_claim + 3; });
+  ends = true;
+  merging.join();
+  EXPECT_THAT(problems, ::testing::IsEmpty());
+  EXPECT_GT(deposed, 0);
+  EXPECT_GE(merges, of_first_claim + 3);
+  painted.end_all();
+  check_all(painted, 3);
+  merge_all(painted);
+  check_all(painted, 3);
 }
 
 TEST_F(Merger, it_stops_between_two_transactions) {
