@@ -16,6 +16,7 @@ class Book:
         self.lock = threading.Condition()
         self.edits = {}  # sequence -> (layer slug, edit, response)
         self.repeats = []  # (method, path, body, key, response): HTTP edits to send again
+        self.strokes = {}  # id -> messages of a complete live stroke, to send them again
         self.faults = []
         self.stopping = threading.Event()
 
@@ -130,31 +131,22 @@ class LivePainter(Painter):
         tool = {k: v for k, v in edit.items() if k not in ("op", "path")}
         batches = [edit["path"]] + [self.path(2) for _ in range(self.random.randint(1, 4))]
         ids = [str(uuid.uuid4()) for _ in batches]
+        messages = [
+            {"op": "stroke.begin", "id": begin, "stroke": stroke, "layer": layer, **tool},
+            *(
+                {"op": "stroke.extend", "id": ids[n], "stroke": stroke, "n": n, "path": path}
+                for n, path in enumerate(batches)
+            ),
+        ]
         saved = set()
         while len(saved) < len(batches):
             try:
                 with self.connect() as live:
                     live.hello()
-                    live.send(
-                        {
-                            "op": "stroke.begin",
-                            "id": begin,
-                            "stroke": stroke,
-                            "layer": layer,
-                            **tool,
-                        }
-                    )
-                    for n, path in enumerate(batches):
+                    live.send(messages[0])
+                    for n, message in enumerate(messages[1:]):
                         if n not in saved:
-                            live.send(
-                                {
-                                    "op": "stroke.extend",
-                                    "id": ids[n],
-                                    "stroke": stroke,
-                                    "n": n,
-                                    "path": path,
-                                }
-                            )
+                            live.send(message)
                     self.collect(live, layer, edit, stroke, batches, ids, saved)
                     if len(saved) == len(batches):
                         live.send({"op": "stroke.end", "id": str(uuid.uuid4()), "stroke": stroke})
@@ -164,6 +156,8 @@ class LivePainter(Painter):
                 time.sleep(0.02)
             except AWAY:
                 time.sleep(0.02)
+        with self.book.lock:
+            self.book.strokes[stroke] = messages
 
     def collect(self, live, layer, edit, stroke, batches, ids, saved):
         while len(saved) < len(batches):
