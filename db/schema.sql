@@ -2281,7 +2281,7 @@ CREATE INDEX edits_layer ON public.edits USING btree (layer_id, sequence);
 
 CREATE INDEX edits_pending ON public.edits USING btree (layer_id, sequence) WHERE ((review = 'pending'::text) AND in_force);
 
-CREATE INDEX edits_timeline ON public.edits USING btree (model_id, "time") INCLUDE (sequence, layer_id, user_name);
+CREATE INDEX edits_timeline ON public.edits USING btree (model_id, "time") INCLUDE (sequence, layer_id, user_name, stroke);
 
 CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undone_by) WHERE (NOT in_force);
 

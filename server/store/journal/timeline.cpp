@@ -18,15 +18,16 @@ PgArray ids_of(const std::vector<LayerId>& layers) {
   return ids;
 }
 
+// Counts strokes, so that the counts stay the same when the batches of a stroke are merged.
 // Clients receive times in milliseconds. The state at the time of an edit must include the edit.
 // The query returns one row for each interval, author and layer. The rows of an interval are joined
 // in memory, so the number of intervals limits the result.
 constexpr const char* kCells =
-    "WITH seen AS MATERIALIZED (SELECT time, sequence, layer_id, user_name FROM edits WHERE model_id = $1 AND layer_id = any($2) "
+    "WITH seen AS MATERIALIZED (SELECT time, sequence, layer_id, user_name, stroke FROM edits WHERE model_id = $1 AND layer_id = any($2) "
     "AND time >= coalesce($3::timestamptz, '-infinity') AND time < coalesce($4::timestamptz, 'infinity') + interval '1 millisecond'), "
     "bounds AS (SELECT coalesce($3::timestamptz, min(time)) AS low, coalesce($4::timestamptz, max(time)) AS high FROM seen) "
     "SELECT b.low, b.high, least(CASE WHEN b.high > b.low THEN floor(date_part('epoch', s.time - b.low) / "
-    "date_part('epoch', b.high - b.low) * $5)::integer ELSE 0 END, $5 - 1) AS number, s.user_name, s.layer_id, count(*), min(s.sequence), "
+    "date_part('epoch', b.high - b.low) * $5)::integer ELSE 0 END, $5 - 1) AS number, s.user_name, s.layer_id, count(DISTINCT s.stroke), min(s.sequence), "
     "max(s.sequence), min(s.time), max(s.time) FROM seen s CROSS JOIN bounds b GROUP BY 1, 2, 3, 4, 5 ORDER BY 3";
 
 template <class Counted>

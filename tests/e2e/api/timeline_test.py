@@ -156,6 +156,8 @@ def test_the_batches_of_a_stroke_are_one_step(server, people, camera):
     (step,) = steps(server, f"?after={before}")["steps"]
     assert (step["first"], step["last"]) == (before + 1, before + 3), step
     assert step["stroke"] == stroke
+    counted = server.ok("GET", M + "/timeline?intervals=1").json()["edits"]
+    assert counted == len(steps(server)["steps"]), "the timeline counts a stroke once"
 
 
 def test_the_own_steps_are_what_undo_and_redo_change(server, people, painted):
@@ -320,8 +322,8 @@ def test_a_long_history_is_counted_in_the_index(server, painted):
     assert timeline["edits"] >= EDITS and len(timeline["intervals"]) <= 240
     print(f"timeline of {EDITS} edits: {took * 1000:.0f} ms")
     plan = server.sql(
-        "EXPLAIN SELECT time, sequence, layer_id, user_name FROM edits "
+        "EXPLAIN SELECT time, sequence, layer_id, user_name, stroke FROM edits "
         f"WHERE model_id = {model} AND layer_id = any('{{{layer}}}') AND time >= '-infinity'"
     )
-    assert "edits_timeline" in str(plan), plan
+    assert "Index Only Scan using edits_timeline" in str(plan), plan
     server.sql(f"DELETE FROM edits WHERE model_id = {model} AND sequence > {newest}")
