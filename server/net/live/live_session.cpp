@@ -408,7 +408,10 @@ void LiveSession::find_start(const protocol::StrokeExtend& message) {
     if (row.stroke != message.stroke || row.user != principal_.user || !row.record.is_object() ||
         row.record.value("n", -1) != message.n - 1)
       continue;
-    if (auto end = end_of_path(row.record))
+    // The list has no paths.
+    const auto whole = shared_->store->journal().state(room_->model().id, {&row.id, 1});
+    if (!whole || whole->known.empty()) return;
+    if (auto end = end_of_path(whole->known.front().record))
       shared_->strokes->continue_from(owner_, message.stroke, message.n, *end);
     return;
   }

@@ -11,6 +11,11 @@ constexpr auto kStateColumns =
         "LEFT JOIN edits r ON r.model_id = e.model_id AND r.sequence = e.reviewed_by ");
 constexpr auto kEditColumns =
     sql("e.sequence, e.id, e.stroke, e.user_name, e.op, e.record, e.answer, ", kStateColumns);
+// Lists do not need the paths of strokes, which can be thousands of points.
+constexpr auto kListColumns =
+    sql("e.sequence, e.id, e.stroke, e.user_name, e.op, CASE WHEN jsonb_typeof(e.record) = 'object' "
+        "THEN e.record - '{path,widths}'::text[] ELSE e.record END, e.answer, ",
+        kStateColumns);
 
 // The edits of model $1 with the ids $2. A batch of a merged edit keeps its response.
 constexpr auto kWithIds = sql(
@@ -54,7 +59,7 @@ Result<HistoryPage> Journal::history(LayerId layer_id, int limit, int offset,
         Params().id(layer_id)));
     if (total.rows() == 0) return no_such("layer", to_string(layer_id));
     auto rows = STRATA_TRY(connection.query(
-        sql("SELECT ", kEditColumns,
+        sql("SELECT ", kListColumns,
             "WHERE e.layer_id = $1 AND e.sequence < $4 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3"),
         Params()
             .id(layer_id)
@@ -123,11 +128,12 @@ Result<std::vector<std::int64_t>> Journal::redoable(LayerId layer_id, const std:
 Result<std::int64_t> Journal::sequence_at(ModelId model_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // Clients get times in milliseconds. The state at the time of an edit must include the edit.
-    // OFFSET 0 makes the planner read the index by time. Otherwise, the planner would search
-    // backward through all later edits: it does not know that an early time has a low sequence.
+    // The planner does not know that an early time has a low sequence, and would search backward
+    // through all later edits. So the query reads the index by time. Clocks can step back, so the
+    // last edit by time need not have the highest sequence.
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM (SELECT sequence FROM edits WHERE model_id = $1 "
-        "AND time < date_trunc('milliseconds', $2::timestamptz) + interval '1 millisecond' OFFSET 0) e",
+        "AND time < date_trunc('milliseconds', $2::timestamptz) + interval '1 millisecond' ORDER BY time DESC LIMIT 1000) e",
         Params().id(model_id).text(utc)));
     return row.integer(0, 0);
   });
