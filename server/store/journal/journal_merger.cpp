@@ -19,13 +19,13 @@
 namespace strata::store {
 namespace {
 
-constexpr std::size_t kEditsAtOnce = 20'000;
-constexpr int kListsAtOnce = 1000;
-constexpr int kTilesAtOnce = 16;                   // packed in one transaction
+constexpr int kListsAtOnce = 200;
+constexpr int kTilesAtOnce = 4;                    // packed in one transaction
 constexpr std::size_t kRevisionsUntilCount = 512;  // of a layer, until its tiles are counted again
-// Painting must not wait for a merge.
+// A merge can wait. Painting must not wait for it, also not while the merge has locked the model
+// and waits for a row that a longer transaction has locked.
 constexpr PgLimits kMergeLimits{std::chrono::seconds(30), std::chrono::seconds(20),
-                                std::chrono::seconds(1)};
+                                std::chrono::milliseconds(100)};
 
 using Statements = std::deque<PgConnection::Statement>;
 
@@ -95,6 +95,14 @@ Result<void> not_merged(PgConnection& connection, ModelId model, std::int64_t ep
               "The edits changed while the server merged them. It tries again later.");
 }
 
+// Returns the error of a statement, or `conflict` if another transaction had locked a row: the
+// merge is tried again later.
+Error failed_statement(PgConnection& connection, Error problem) {
+  if (connection.sqlstate() != "55P03") return problem;
+  return {ErrorCode::conflict, "Journal is locked",
+          "Another change has locked the journal. The server merges it later.", ""};
+}
+
 // Runs the statements, and commits if `is_complete(results)` is true. Otherwise the transaction has
 // no effect.
 template <class IsComplete>
@@ -102,8 +110,10 @@ Result<void> commit_if(PgConnection& connection, ModelId model, std::int64_t epo
                        const Statements& statements, IsComplete is_complete) {
   {
     Transaction transaction = Transaction::adopt(connection);
-    const auto results = STRATA_TRY(connection.pipeline(statements));
-    if (results[kModelRow].rows() == 1 && results[kLayerRow].rows() == 1 && is_complete(results))
+    const auto results = connection.pipeline(statements);
+    if (!results) return tl::unexpected(failed_statement(connection, results.error()));
+    if ((*results)[kModelRow].rows() == 1 && (*results)[kLayerRow].rows() == 1 &&
+        is_complete(*results))
       return transaction.commit();
   }
   return not_merged(connection, model, epoch);
@@ -366,6 +376,7 @@ bool all_equal(const PgResult& removed, const PgResult& changed) {
 struct Packed {
   TileAddress tile;
   std::int64_t first = 0, last = 0;
+  std::vector<std::int64_t> sequences;
   std::vector<std::uint8_t> content;
 };
 
@@ -407,8 +418,23 @@ Result<std::optional<Packed>> pack_tile(PgConnection& connection, LayerId layer,
   // The revisions are deleted only if the segment contains the same revisions.
   const auto again = decode_segment(tile, type, *content);
   if (!again || !(*again == segment)) return std::nullopt;
-  return Packed{tile, segment.entries.front().sequence, segment.entries.back().sequence,
+  std::vector<std::int64_t> sequences;
+  for (const auto& entry : segment.entries) sequences.push_back(entry.sequence);
+  return Packed{tile, sequences.front(), sequences.back(), std::move(sequences),
                 std::move(*content)};
+}
+
+// Returns a row if an edit has no list of its tiles. Without it, undo would not find the revisions
+// of the edit in segments.
+void find_unlisted(ModelId model, const std::vector<Packed>& packed, Statements& out) {
+  PgArray sequences(oid::kInt8);
+  for (const Packed& segment : packed)
+    for (const std::int64_t sequence : segment.sequences) sequences.add(sequence);
+  Params params;
+  params.id(model).array(sequences);
+  out.push_back(
+      {"SELECT 1 FROM edits WHERE model_id = $1 AND sequence = any($2) AND tiles IS NULL LIMIT 1",
+       std::move(params)});
 }
 
 void replace_by_segments(LayerId layer, const std::vector<Packed>& packed, Statements& out) {
@@ -464,8 +490,8 @@ Result<JournalMerger::Done> JournalMerger::merge(ModelId model, std::int64_t epo
     done.edits += static_cast<std::int64_t>(group.size()) - 1;
     done.revisions += *replaced;
   }
-  STRATA_TRY(list_tiles(claim, window, plan.through, go_on));
-  if (!go_on()) return done;
+  const bool are_listed = STRATA_TRY(list_tiles(claim, window, plan.through, go_on));
+  if (!are_listed || !go_on()) return done;
   STRATA_TRY(advance(claim, plan.through));
   std::map<LayerId, std::size_t> written;
   for (const PlannedEdit& edit : window.edits)
@@ -497,7 +523,8 @@ Result<JournalMerger::Window> JournalMerger::read_window(
         Params().id(model)));
     for (int i = 0; i < named.rows(); ++i) window.rules.named_states.push_back(named.integer(i, 0));
     STRATA_TRY(connection.each_row(
-        kWindow, Params().id(model).integer(after).integer(std::int64_t{kEditsAtOnce}),
+        kWindow,
+        Params().id(model).integer(after).integer(static_cast<std::int64_t>(edits_at_once_)),
         [&](const PgResult& row) -> Result<void> {
           window.edits.push_back({row.integer(0, 0), row.id<LayerId>(0, 1), row.uuid(0, 2),
                                   row.text(0, 3), row.time(0, 4), row.boolean(0, 5), row.text(0, 6),
@@ -505,7 +532,7 @@ Result<JournalMerger::Window> JournalMerger::read_window(
                                   static_cast<std::size_t>(row.integer(0, 8))});
           return {};
         }));
-    window.rules.is_cut = window.edits.size() >= kEditsAtOnce;
+    window.rules.is_cut = window.edits.size() >= edits_at_once_;
     return window;
   });
 }
@@ -548,9 +575,9 @@ Result<std::optional<std::int64_t>> JournalMerger::merge_group(
 }
 
 // Stores the list of tiles of the edits that were not merged. Undo needs the list when their
-// revisions are in segments. Storing it needs no lock: an edit has its list before its revisions
-// are packed, and keeps it.
-Result<void> JournalMerger::list_tiles(const Claim& claim, const Window& window,
+// revisions are in segments. Locks the model before the edits, as the journal writer does. Returns
+// false if it was interrupted and some edits may have no list.
+Result<bool> JournalMerger::list_tiles(const Claim& claim, const Window& window,
                                        std::int64_t through, const Continue& go_on) {
   for (std::size_t i = 0; i < window.edits.size() && window.edits[i].sequence <= through;) {
     PgArray sequences(oid::kInt8);
@@ -558,29 +585,37 @@ Result<void> JournalMerger::list_tiles(const Claim& claim, const Window& window,
            sequences.size() < kListsAtOnce;
          ++i)
       sequences.add(window.edits[i].sequence);
-    if (!go_on()) return {};
+    if (!go_on()) return false;
     STRATA_TRY(journal_.pool_.write_within(kMergeLimits, [&](PgConnection& connection) -> Result<void> {
       STRATA_TRY(connection.query("SELECT set_config('synchronous_commit', 'off', true)"));
-      STRATA_TRY(connection.query(
+      auto model =
+          connection.query("SELECT 1 FROM all_models WHERE id = $1 AND owner_epoch = $2 FOR SHARE",
+                           Params().id(claim.model).integer(claim.epoch));
+      if (!model) return tl::unexpected(failed_statement(connection, model.error()));
+      if (model->rows() == 0) return not_merged(connection, claim.model, claim.epoch);
+      auto listed = connection.query(
           "UPDATE edits e SET tiles = ARRAY(SELECT (r.tile_y * 128 + r.tile_x)::smallint FROM tile_revisions r "
           "WHERE r.layer_id = e.layer_id AND r.sequence = e.sequence ORDER BY r.tile_y, r.tile_x) "
           "WHERE e.model_id = $1 AND e.sequence = any($2) AND e.tiles IS NULL",
-          Params().id(claim.model).array(sequences)));
+          Params().id(claim.model).array(sequences));
+      if (!listed) return tl::unexpected(failed_statement(connection, listed.error()));
       return {};
     }));
   }
-  return {};
+  return true;
 }
 
 // Marks the edits up to `through`. They are not read again, and their revisions can be packed.
 Result<void> JournalMerger::advance(const Claim& claim, std::int64_t through) {
   return journal_.pool_.write_within(kMergeLimits, [&](PgConnection& connection) -> Result<void> {
-    auto done = STRATA_TRY(connection.query(
+    auto done = connection.query(
         "WITH claim AS (SELECT id FROM all_models WHERE id = $1 AND owner_epoch = $2 FOR SHARE) "
         "INSERT INTO merged_journals (model_id, sequence) SELECT id, $3 FROM claim ON CONFLICT (model_id) "
         "DO UPDATE SET sequence = greatest(merged_journals.sequence, excluded.sequence)",
-        Params().id(claim.model).integer(claim.epoch).integer(through)));
-    return done.affected() == 1 ? Result<void>{} : not_merged(connection, claim.model, claim.epoch);
+        Params().id(claim.model).integer(claim.epoch).integer(through));
+    if (!done) return tl::unexpected(failed_statement(connection, done.error()));
+    return done->affected() == 1 ? Result<void>{}
+                                 : not_merged(connection, claim.model, claim.epoch);
   });
 }
 
@@ -639,9 +674,10 @@ Result<std::int64_t> JournalMerger::pack_tiles(const Claim& claim, LayerId layer
   Statements statements;
   begin_fenced(claim.model, claim.epoch, layer, std::string(name(*type)), statements);
   replace_by_segments(layer, packed, statements);
+  find_unlisted(claim.model, packed, statements);
   const auto revisions = static_cast<std::int64_t>(packed.size()) * kRevisionsPerSegment;
   STRATA_TRY(commit_if(connection, claim.model, claim.epoch, statements, [&](const auto& results) {
-    return results[kFirstChange].affected() == revisions;
+    return results[kFirstChange].affected() == revisions && results[kFirstChange + 2].rows() == 0;
   }));
   return revisions;
 }

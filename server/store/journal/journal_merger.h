@@ -38,7 +38,9 @@ class JournalMerger {
   // Called between transactions. It may wait. If it returns false, the merger stops.
   using Continue = std::function<bool()>;
 
-  explicit JournalMerger(Journal& journal) : journal_(journal) {}
+  // Reads up to `edits_at_once` edits of a model and plans their merges together.
+  explicit JournalMerger(Journal& journal, std::size_t edits_at_once = 20'000)
+      : journal_(journal), edits_at_once_(edits_at_once) {}
 
   // Returns whether the journal may be merged. Programs before this one cannot read the result, so
   // it first marks the database, and returns false until `after_mark` has passed. It also returns
@@ -70,7 +72,7 @@ class JournalMerger {
   // Returns the number of revisions that it replaced; nothing if the edits do not change.
   Result<std::optional<std::int64_t>> merge_group(const Claim& claim, LayerId layer,
                                                   const std::vector<std::int64_t>& sequences);
-  Result<void> list_tiles(const Claim& claim, const Window& window, std::int64_t through,
+  Result<bool> list_tiles(const Claim& claim, const Window& window, std::int64_t through,
                           const Continue& go_on);
   Result<void> advance(const Claim& claim, std::int64_t through);
   Result<std::int64_t> pack_layer(const Claim& claim, LayerId layer, std::int64_t through,
@@ -79,6 +81,7 @@ class JournalMerger {
                                   const std::vector<TileAddress>& tiles);
 
   Journal& journal_;
+  const std::size_t edits_at_once_;
   // Revisions of each layer since its tiles were last counted. No entry: they were never counted.
   std::map<LayerId, std::size_t> since_packed_;
   // Tiles with damaged revisions. They stay as they are, and the log has one line about each.

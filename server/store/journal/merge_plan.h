@@ -34,7 +34,7 @@ struct MergeRules {
   // Sequences of states that people have named, ascending. They stay exact.
   std::vector<std::int64_t> named_states;
   // Limits of one merge, so that it locks the journal only for some milliseconds.
-  std::size_t max_revisions = 2048;
+  std::size_t max_revisions = 512;
   std::int64_t max_span = 4096;  // from the first to the last sequence
   // Of the path of a merged edit, so that its record stays small enough for the database.
   std::size_t max_points = 16384;
