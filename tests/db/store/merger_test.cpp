@@ -45,6 +45,8 @@ struct KnownEdit {
   std::map<TileAddress, Written> written;
   std::int64_t undone_by = 0;  // 0: in force
   nlohmann::json answer;
+  Review review = Review::none;
+  std::int64_t reviewed_by = 0;
 };
 
 // Two layers that several people paint, and the data that the journal must return for them.
@@ -61,7 +63,7 @@ class Painted {
     for (const Layer& layer : layers_) states_[layer.id][0] = {};
   }
 
-  // Saves `count` edits: batches of strokes, and sometimes a fill, an undo or a redo.
+  // Saves `count` edits: batches of strokes, and sometimes a fill, an undo, a redo or a review.
   void paint(int count) {
     for (int i = 0; i < count; ++i) {
       // Usually the same person continues. Sometimes another person paints between the batches.
@@ -78,6 +80,7 @@ class Painted {
           end_stroke(user);
           turn(layer, user, pick(3) == 0);
           break;
+        case 3: review(layer, user); break;
         default: batch(user);
       }
     }
@@ -99,25 +102,7 @@ class Painted {
     if (edits.empty()) return false;
     if (in_turn) in_turn(TurnStep::has_edits);
     auto entry = this->entry(layer, redoes ? "redo" : "undo", user, random_uuid());
-    Content& content = contents_[layer.id];
-    const auto written = journal.written_by(layer, edits).value();
-    if (in_turn) in_turn(TurnStep::has_tiles);
-    for (const auto& [tile, texels] : written) {
-      const TileData before = content.contains(tile) ? content.at(tile) : TileData(layer.type);
-      std::optional<TileResolver> resolver;
-      EXPECT_TRUE(journal.tile_past(
-          layer, tile, [&] { resolver.emplace(before, texels); },
-          [&](PastRevision& revision) {
-            if (std::ranges::binary_search(edits, revision.sequence)) revision.in_force = redoes;
-            resolver->add(revision);
-            return true;
-          }));
-      TileData after = std::move(*resolver).finish();
-      if (after == before) continue;
-      entry.revisions.push_back(
-          {tile, encode_revision(make_revision(tile, before, after, texels)), {}});
-      put(content, tile, std::move(after));
-    }
+    change(layer, edits, entry, [&](PastRevision& revision) { revision.in_force = redoes; });
     (redoes ? entry.enable : entry.disable) = edits;
     // A merged edit has the sequence of its last batch, and represents all of its batches.
     const KnownEdit last = *std::ranges::find(known_, edits.back(), &KnownEdit::sequence);
@@ -128,6 +113,48 @@ class Painted {
     if (in_turn) in_turn(TurnStep::is_computed);
     submit(std::move(entry), layer, {});
     return true;
+  }
+
+  // Makes a random decision about the strokes of a user, or about one of them, as a room does.
+  void review(std::size_t index, const std::string& user) {
+    const Layer& layer = layers_[index];
+    const Decision decision =
+        std::vector{Decision::accept, Decision::reject, Decision::reopen}[pick(3)];
+    Reviewees which;
+    which.user = user;
+    if (pick(2) == 0) {
+      // A client may name a batch that was merged since it has read the list.
+      for (const KnownEdit& known : known_)
+        if (known.layer == layer.id && known.user == user && pick(6) == 0 && which.edits.empty())
+          which.edits.push_back(known.sequence);
+    }
+    const auto found = store_.journal().under_review(layer.id, decision, which);
+    ASSERT_TRUE(found) << found.error().detail;
+    if (found->edits.empty()) return;
+    for (const auto& edit : found->edits) end_stroke(edit.user);
+    const bool reopens = decision == Decision::reopen;
+    std::vector<std::int64_t> edits;
+    for (const auto& edit : found->edits) edits.push_back(edit.sequence);
+    auto entry = this->entry(layer, std::string(name(decision)), "Dora", random_uuid());
+    change(layer, edits, entry, [&](PastRevision& revision) {
+      if (decision != Decision::accept) revision.in_force = reopens;
+      revision.provisional = reopens;
+    });
+    if (decision != Decision::accept) (reopens ? entry.enable : entry.disable) = edits;
+    entry.reviewed = {edits, outcome(decision)};
+    for (const std::int64_t sequence : edits) {
+      const KnownEdit last = *std::ranges::find(known_, sequence, &KnownEdit::sequence);
+      for (KnownEdit& known : known_) {
+        if (known.layer != layer.id || known.user != last.user || known.stroke != last.stroke ||
+            known.undone_by != last.undone_by || known.review != last.review ||
+            known.reviewed_by != last.reviewed_by)
+          continue;
+        if (decision != Decision::accept) known.undone_by = reopens ? 0 : entry.sequence;
+        known.review = outcome(decision);
+        known.reviewed_by = reopens ? 0 : entry.sequence;
+      }
+    }
+    submit(std::move(entry), layer, {});
   }
 
   // Compares one of `every` of the states that must be exact, and some pairs of states.
@@ -169,7 +196,40 @@ class Painted {
     }
   }
 
-  // Every edit is in the journal once, with its first response.
+  // The texels that show an edit that waits for review, as a room reads them.
+  void check_provisional() {
+    for (const Layer& layer : layers_) {
+      std::map<TileAddress, TileMask> expected, found;
+      std::vector<std::int64_t> waiting;
+      for (const KnownEdit& edit : known_)
+        if (edit.layer == layer.id && edit.undone_by == 0)
+          for (const auto& [tile, written] : edit.written)
+            for (int w = 0; w < kMaskWords; ++w) {
+              std::uint64_t& word = expected[tile].words[w];
+              if (edit.review == Review::pending)
+                word |= written.mask.words[w];
+              else
+                word &= ~written.mask.words[w];
+            }
+      std::erase_if(expected, [](const auto& tile) { return !tile.second.any(); });
+      const auto under_review = store_.journal().under_review(layer.id, Decision::accept, {});
+      for (const auto& edit : under_review.value().edits) waiting.push_back(edit.sequence);
+      const auto written_tiles = store_.journal().written_by(layer, waiting).value();
+      for (const auto& [tile, texels] : written_tiles) {
+        std::optional<TileResolver> resolver;
+        ASSERT_TRUE(store_.journal().tile_past(
+            layer, tile, [&] { resolver.emplace(TileData(layer.type), texels); },
+            [&](PastRevision& revision) {
+              resolver->add(revision);
+              return resolver->is_open();
+            }));
+        if (resolver->provisional().any()) found[tile] = resolver->provisional();
+      }
+      ASSERT_TRUE(found == expected);
+    }
+  }
+
+  // Every edit is in the journal once, with its first response and its state.
   void check_ids() {
     std::vector<Uuid> ids;
     for (const KnownEdit& edit : known_) ids.push_back(edit.id);
@@ -184,6 +244,8 @@ class Painted {
       EXPECT_EQ(row.user, edit.user);
       EXPECT_EQ(row.stroke, edit.stroke);
       EXPECT_EQ(row.answer, edit.answer);
+      EXPECT_EQ(row.in_force, edit.undone_by == 0);
+      EXPECT_EQ(row.review, edit.review);
     }
   }
 
@@ -214,6 +276,7 @@ class Painted {
     int n = 0;
     std::uint32_t bits = 0;
     double x = 0;
+    bool waits = false;  // for review
   };
   struct Near {
     LayerId layer = 0;
@@ -239,6 +302,31 @@ class Painted {
     return found;
   }
 
+  // Adds the revisions that the texels of the edits get after `turn` has changed their state.
+  void change(const Layer& layer, const std::vector<std::int64_t>& edits, JournalEntry& entry,
+              const std::function<void(PastRevision&)>& turn) {
+    auto& journal = store_.journal();
+    Content& content = contents_[layer.id];
+    const auto written = journal.written_by(layer, edits).value();
+    if (in_turn) in_turn(TurnStep::has_tiles);
+    for (const auto& [tile, texels] : written) {
+      const TileData before = content.contains(tile) ? content.at(tile) : TileData(layer.type);
+      std::optional<TileResolver> resolver;
+      EXPECT_TRUE(journal.tile_past(
+          layer, tile, [&] { resolver.emplace(before, texels); },
+          [&](PastRevision& revision) {
+            if (std::ranges::binary_search(edits, revision.sequence)) turn(revision);
+            resolver->add(revision);
+            return true;
+          }));
+      TileData after = std::move(*resolver).finish();
+      if (after == before) continue;
+      entry.revisions.push_back(
+          {tile, encode_revision(make_revision(tile, before, after, texels)), {}});
+      put(content, tile, std::move(after));
+    }
+  }
+
   JournalEntry entry(const Layer& layer, const std::string& op, const std::string& user,
                      const Uuid& stroke) {
     JournalEntry entry;
@@ -262,7 +350,8 @@ class Painted {
     if (pick(8) == 0) end_stroke(user);
     auto [open, is_new] = open_.try_emplace(user);
     if (is_new)
-      open->second = {random_uuid(), pick(2), 0, 1 + static_cast<std::uint32_t>(pick(90)), 0};
+      open->second = {random_uuid(), pick(2), 0, 1 + static_cast<std::uint32_t>(pick(90)), 0,
+                      pick(2) == 0};
     OpenStroke& stroke = open->second;
     write(stroke.layer, user, "stroke", stroke.id, &stroke);
   }
@@ -280,7 +369,9 @@ class Painted {
     } else {
       entry.stroke = entry.id;
     }
-    KnownEdit known{entry.sequence, entry.id, entry.stroke, user, layer.id, {}, 0, entry.answer};
+    KnownEdit known{entry.sequence, entry.id, entry.stroke, user, layer.id, {}, 0, entry.answer,
+                    Review::none,   0};
+    if (open ? open->waits : pick(3) == 0) known.review = entry.review = Review::pending;
     const std::uint32_t bits = open ? open->bits : 1 + static_cast<std::uint32_t>(pick(90));
     const bool erases = !open && pick(4) == 0;
     Content& content = contents_[layer.id];
@@ -389,6 +480,7 @@ class Merger : public ::testing::Test {
     painted.check_states(every);
     painted.check_ids();
     painted.check_rule();
+    painted.check_provisional();
   }
 
   const std::string dsn_ = test::fresh_database();
@@ -438,6 +530,25 @@ TEST_F(Merger, random_journals_give_the_same_texels_and_responses) {
   }
   EXPECT_GT(count("edit_batches"), 50);
   EXPECT_GT(count("tile_segments"), 4);
+}
+
+TEST_F(Merger, a_long_journal_is_merged_in_several_windows) {
+  Painted painted(*store_, model_.id, 11);
+  painted.paint(420);
+  painted.end_all();
+  JournalMerger merger(store_->journal(), 130);
+  int windows = 0;
+  for (bool more = true; more; ++windows) {
+    ASSERT_LT(windows, 40);
+    const auto done = painted.merge(merger, painted.time() + 1h);
+    ASSERT_TRUE(done) << done.error().detail;
+    more = done->more;
+    check_all(painted, 4);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GE(windows, 3);
+  EXPECT_GT(count("edit_batches"), 50);
+  check_all(painted);
 }
 
 TEST_F(Merger, a_stroke_becomes_one_edit_with_the_whole_path_and_the_sums) {
