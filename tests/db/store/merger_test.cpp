@@ -656,6 +656,42 @@ TEST_F(Merger, a_damaged_tile_does_not_stop_the_packing_of_others) {
             JournalMerger::kRevisionsPerSegment);
 }
 
+// Undo would not find these revisions.
+TEST_F(Merger, revisions_of_an_edit_without_a_list_of_tiles_are_not_packed) {
+  const Layer layer = test::make_layer(*store_, model_.id);
+  for (int i = 0; i < JournalMerger::kRevisionsPerSegment; ++i) save_stroke(layer, 1);
+  const auto epoch = store_->journal().state(model_.id, {})->epoch;
+  const auto done = merger_.merge(model_.id, epoch, Clock::now() + 1h, [&] {
+    if (count("merged_journals") > 0) run("UPDATE edits SET tiles = NULL WHERE sequence = 7");
+    return true;
+  });
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::conflict);
+  EXPECT_EQ(count("tile_segments"), 0);
+  EXPECT_EQ(count("tile_revisions"), 2 * JournalMerger::kRevisionsPerSegment);
+}
+
+// The merge has locked the model while it waits for the layer, so painting would wait, too.
+TEST_F(Merger, a_merge_gives_up_soon_if_another_change_has_locked_the_layer) {
+  const Layer layer = test::make_layer(*store_, model_.id);
+  save_stroke(layer, 3);
+  const auto epoch = store_->journal().state(model_.id, {})->epoch;
+  const auto merge = [&] {
+    return merger_.merge(model_.id, epoch, Clock::now() + 1h, [] { return true; });
+  };
+  PgConnection other = PgConnection::connect(dsn_).value();
+  {
+    const Transaction change = Transaction::begin(other).value();
+    ASSERT_TRUE(other.query("SELECT 1 FROM all_layers FOR UPDATE"));
+    const auto refused = merge();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::conflict) << refused.error().detail;
+    EXPECT_EQ(count("edits"), 3);
+  }
+  ASSERT_TRUE(merge());
+  EXPECT_EQ(count("edits"), 1);
+}
+
 TEST_F(Merger, a_review_finds_a_stroke_by_each_of_its_batches) {
   const Layer layer = test::make_layer(*store_, model_.id);
   test::Painter painter(layer, 4);
