@@ -46,8 +46,8 @@ class PastLayers::Place {
  public:
   Request wanted;  // all members are protected by the mutex of PastLayers
   Found found;
-  // The last request that failed. It is not tried again.
-  std::optional<std::pair<std::int64_t, render::ModelHandle>> failed;
+  // The last request that failed. It is not tried again until `allow_retries`.
+  std::optional<std::tuple<std::int64_t, render::ModelHandle, int>> failed;
   bool running = false;
 };
 
@@ -76,7 +76,7 @@ PastLayers::Found PastLayers::find(const std::shared_ptr<Place>& place, const Re
     place->found.problem = nullptr;
     return place->found;
   }
-  if (!place->running && !stopped_ && place->failed != std::pair(request.at, model_)) {
+  if (!place->running && !stopped_ && place->failed != std::tuple(request.at, model_, retries_)) {
     place->running = true;
     boost::asio::post(workers_, [self = shared_from_this(), place] { self->run(place); });
   }
@@ -87,10 +87,12 @@ void PastLayers::run(const std::shared_ptr<Place>& place) {
   for (;;) {
     Request request;
     render::ModelHandle model = 0;
+    int retries = 0;
     {
       std::lock_guard lock(mutex_);
       request = place->wanted;
       model = model_;
+      retries = retries_;
     }
     auto made = make(request, model);
     bool is_current = false;
@@ -108,7 +110,7 @@ void PastLayers::run(const std::shared_ptr<Place>& place) {
         is_current = serves(*place->found.moment, place->wanted, model_);
       } else if (is_current) {
         place->found.problem = std::make_shared<const Error>(made.error());
-        place->failed = {request.at, model};
+        place->failed = {request.at, model, retries};
       }
       if (is_current) place->running = false;
     }
@@ -191,6 +193,11 @@ void PastLayers::set_model(render::ModelHandle model) {
   std::lock_guard lock(mutex_);
   model_ = model;
   gone.swap(kept_);
+}
+
+void PastLayers::allow_retries() {
+  std::lock_guard lock(mutex_);
+  ++retries_;
 }
 
 bool PastLayers::drop_unused() {

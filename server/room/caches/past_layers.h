@@ -82,6 +82,8 @@ class PastLayers : public std::enable_shared_from_this<PastLayers> {
 
   // Drops the copies on the GPU, which were deleted together with the old model.
   void set_model(render::ModelHandle model);
+  // Allows trying failed requests again, because the database was unreachable. `find` starts them.
+  void allow_retries();
   bool drop_unused();  // returns false if nothing was dropped
   void stop();         // stops reading, and no longer calls `ready`
 
@@ -109,6 +111,7 @@ class PastLayers : public std::enable_shared_from_this<PastLayers> {
   std::mutex mutex_;
   std::list<Kept> kept_;  // in order of last use, the newest first
   render::ModelHandle model_ = 0;
+  int retries_ = 0;  // the number of calls of `allow_retries`
   bool stopped_ = false;
 };
 

@@ -134,6 +134,14 @@ void RecordColors::records_changed(TableId table_id) {
   }
 }
 
+void RecordColors::make_again() {
+  std::lock_guard lock(mutex_);
+  for (const auto& entry : entries_) {
+    entry->outdated = true;
+    start(entry);
+  }
+}
+
 void RecordColors::stop() {
   std::lock_guard lock(mutex_);
   stopped_ = true;

@@ -56,7 +56,8 @@ class RecordColors : public std::enable_shared_from_this<RecordColors> {
   }
 
   void records_changed(TableId table_id);
-  void stop();  // stops making palettes, and no longer calls `ready`
+  void make_again();  // makes all palettes again, because the database was unreachable
+  void stop();        // stops making palettes, and no longer calls `ready`
 
  private:
   struct Entry {

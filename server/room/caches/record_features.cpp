@@ -105,6 +105,14 @@ void RecordFeatures::records_changed(TableId table_id) {
   }
 }
 
+void RecordFeatures::read_again() {
+  std::lock_guard lock(mutex_);
+  for (auto& [key, entry] : entries_) {
+    entry.outdated = true;
+    start(key, entry);
+  }
+}
+
 void RecordFeatures::stop() {
   std::lock_guard lock(mutex_);
   stopped_ = true;

@@ -39,6 +39,7 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
   // Returns the features after an edit of the model. Blocks.
   Result<SurfaceFeatures> when(TableId table_id, Visibility sight, std::int64_t sequence) const;
   void records_changed(TableId table_id);
+  void read_again();  // reads all features again, because the database was unreachable
   // Returns the result of `show_features`. Views that show the same features get the same object,
   // so a changed address means changed features.
   render::FeaturesShown shown(const std::vector<LayerFeatures>& layers);

@@ -9,6 +9,7 @@
 #include "room/pipeline/tile_changes.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
+#include "store/content/surface_images.h"
 #include "store/journal/journal_reads.h"
 
 namespace strata::room {
@@ -54,6 +55,13 @@ Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
     contents.layers.push_back(std::move(state));
   }
   return contents;
+}
+
+Result<ModelMetadata> read_metadata(store::Store& store, ModelId model_id) {
+  auto model = STRATA_TRY(store.models().find(to_string(model_id)));
+  auto layers = STRATA_TRY(store.layers().of_model(model_id, Role::owner));
+  auto images = STRATA_TRY(store.surface_images().of_model(model_id));
+  return ModelMetadata{std::move(model), std::move(layers), std::move(images)};
 }
 
 namespace {

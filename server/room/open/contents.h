@@ -7,6 +7,8 @@
 #include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
+#include "domain/scene/model.h"
+#include "domain/scene/surface_image.h"
 #include "mesh/surface/geometry.h"
 #include "room/pipeline/layer_state.h"
 #include "store/store.h"
@@ -27,6 +29,14 @@ struct JournalContents {
 };
 Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
                                      const std::vector<LayerState>& held);
+
+// What a room keeps of a model besides its geometry and its tiles.
+struct ModelMetadata {
+  Model model;
+  std::vector<Layer> layers;
+  std::vector<SurfaceImage> images;
+};
+Result<ModelMetadata> read_metadata(store::Store& store, ModelId model_id);
 
 // The result has tile mirrors, but no handles of GPU layers.
 Result<LayerState> read_layer_state(store::Store& store, Layer layer);

@@ -33,10 +33,10 @@ class OpenRoom::LayersPart final : public Layers {
 
   // Marks computed layers that match `reads` as stale, and notifies listeners. Runs on the strand.
   void outdate(const std::function<bool(const LayerFormula&)>& reads);
-
- private:
   // Replaces the layer of the room by the stored one, and notifies listeners. Runs on the strand.
   Layer replace(const Layer& stored);
+
+ private:
   Result<void> unload(LayerId id, const std::function<Result<void>()>& in_store);
   // Loads a restored layer. Must run within `exclusively`.
   Result<void> load(LayerId id);

@@ -214,16 +214,19 @@ Result<Model> OpenRoom::update_model(Model model, const store::IdempotentRespons
   auto updated = STRATA_TRY(services_.store.models().update(std::move(model), answer));
   const bool is_turned = updated.up != this->model().up;
   auto shadow = is_turned ? make_contact_shadow(updated.up) : nullptr;
-  run_on(strand_, [&] {
-    {
-      std::lock_guard lock(mutex_);
-      if (is_turned) contact_shadow_ = std::move(shadow);
-      model_ = updated;
-    }
-    participants_part_->tell([&](Listener& l) { l.model_changed(updated); });
-    participants_part_->styles_changed();  // the spacing of patterns is in millimeters
-  });
+  run_on(strand_, [&] { replace_model(updated, std::move(shadow)); });
   return updated;
+}
+
+void OpenRoom::replace_model(const Model& stored,
+                             std::shared_ptr<const mesh::ContactShadow> shadow) {
+  {
+    std::lock_guard lock(mutex_);
+    if (stored.up != model_.up) contact_shadow_ = std::move(shadow);
+    model_ = stored;
+  }
+  participants_part_->tell([&](Listener& l) { l.model_changed(stored); });
+  participants_part_->styles_changed();  // the spacing of patterns is in millimeters
 }
 
 Result<void> OpenRoom::settle() {
@@ -302,6 +305,8 @@ void OpenRoom::move_away(const Error& why) {
 void OpenRoom::stop_saving(const Error& why) {
   run_on(strand_, [&] {
     if (moved_) return;
+    ++recovery_.suspensions;
+    recovery_.metadata_outdated = recovery_.compared = false;
     // Notifies listeners first, so clients keep refused edits until the database answers.
     if (is_current_.exchange(false))
       participants_part_->tell([](Listener& l) { l.database_reachable(false); });
@@ -311,12 +316,28 @@ void OpenRoom::stop_saving(const Error& why) {
 
 void OpenRoom::continue_saving() {
   run_on(strand_, [&] {
-    if (!moved_) pipeline_->continue_saving();
+    if (moved_) return;
+    recovery_.metadata_outdated = !is_current_;
+    pipeline_->continue_saving();
   });
 }
 
 void OpenRoom::saving_continued() {
+  recovery_.compared = true;
+  if (recovery_.metadata_outdated)
+    pipeline_->pause();  // then `recover` reads the metadata
+  else
+    report_current();
+}
+
+void OpenRoom::report_current() {
+  if (is_current_ || !recovery_.compared || recovery_.metadata_outdated) return;
   is_current_ = true;
+  // What could not be read in the meantime is read now, also what nobody has changed.
+  record_colors_->make_again();
+  record_features_->read_again();
+  past_layers_->allow_retries();
+  participants_part_->styles_changed();
   participants_part_->tell([](Listener& l) { l.database_reachable(true); });
 }
 

@@ -161,6 +161,13 @@ class OpenRoom final : public Room,
   void recover();
   void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
   void on_journal_read(Result<JournalContents> contents);
+  void on_metadata_read(int suspensions_before, const Result<ModelMetadata>& metadata,
+                        std::shared_ptr<const mesh::ContactShadow> shadow);
+  // Ends the suspension when the room has everything that the database has.
+  void report_current();
+  // Replaces the model by the stored one, and notifies listeners. Runs on the strand. `shadow` is
+  // used if the upward direction has changed.
+  void replace_model(const Model& stored, std::shared_ptr<const mesh::ContactShadow> shadow);
   void retry_recovery(const Error& why);
   // As in gpu_problem.h, unless the room is closed.
   Error gpu_problem(const Error& why) const;
@@ -213,7 +220,12 @@ class OpenRoom final : public Room,
     explicit Recovery(const Strand& strand) : timer(strand) {}
     bool gpu_lacks_all = false;
     bool journal_differs = false;
-    bool working = false;  // a recovery is running
+    // From `continue_saving` until the model, its layers and images were read again. A change may
+    // have been saved although its response was lost, so the room does not have it.
+    bool metadata_outdated = false;
+    bool compared = false;  // the journal was compared since `continue_saving`
+    int suspensions = 0;    // the number of calls of `stop_saving`
+    bool working = false;   // a recovery is running
     bool closed = false;
     int gpu_losses = 0;
     std::chrono::milliseconds retry_in = kFirstRetry;

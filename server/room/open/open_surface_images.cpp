@@ -1,5 +1,7 @@
 #include "room/open/open_surface_images.h"
 
+#include <algorithm>
+
 #include "core/no_such.h"
 #include "room/caches/surface_image_cache.h"
 #include "room/open/open_participants.h"
@@ -43,6 +45,21 @@ Result<void> OpenRoom::SurfaceImagesPart::erase(SurfaceImageId id,
   room_.surface_image_cache_->drop(id);
   if (known) tell(Listener::LayerChange::deleted, *known);
   return {};
+}
+
+void OpenRoom::SurfaceImagesPart::replace(const std::vector<SurfaceImage>& stored) {
+  for (const SurfaceImage& image : stored) {
+    const auto known = room_.surface_image_cache_->find(to_string(image.id));
+    if (known && known->version >= image.version) continue;
+    room_.surface_image_cache_->put(image);
+    tell(known ? Listener::LayerChange::changed : Listener::LayerChange::created, image);
+  }
+  for (const SurfaceImage& known : all()) {
+    if (std::ranges::any_of(stored, [&](const auto& image) { return image.id == known.id; }))
+      continue;
+    room_.surface_image_cache_->drop(known.id);
+    tell(Listener::LayerChange::deleted, known);
+  }
 }
 
 void OpenRoom::SurfaceImagesPart::tell(Listener::LayerChange change, const SurfaceImage& image) {

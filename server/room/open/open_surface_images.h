@@ -22,6 +22,10 @@ class OpenRoom::SurfaceImagesPart final : public SurfaceImages {
                               const store::IdempotentResponse<SurfaceImage>& answer) override;
   Result<void> erase(SurfaceImageId id, const store::IdempotentResponse<>& answer) override;
 
+  // Replaces the images of the room by the stored ones, and notifies listeners of each change. Runs
+  // on the strand.
+  void replace(const std::vector<SurfaceImage>& stored);
+
  private:
   void tell(Listener::LayerChange change, const SurfaceImage& image);
 

@@ -1,13 +1,18 @@
 // Recovery of an open room. After a lost context, the room makes its copies on the GPU again. If
 // the journal contains more edits than the mirrors, the room reads the layers from it again. Both
 // happen while the pipeline is paused and no edit is in progress, so nothing else changes the
-// layers. A failed recovery is repeated until the room is closed. Waiting edits are refused after
-// each attempt.
+// layers. In the same way, the room reads the model, its layers and its images again after the node
+// had no lease. A failed recovery is repeated until the room is closed. Waiting edits are refused
+// after each attempt.
 #include <boost/asio/post.hpp>
 
+#include <algorithm>
+
 #include "core/log.h"
+#include "room/open/open_layers.h"
 #include "room/open/open_participants.h"
 #include "room/open/open_room.h"
+#include "room/open/open_surface_images.h"
 
 namespace strata::room {
 void OpenRoom::gpu_lost() {
@@ -47,6 +52,19 @@ void OpenRoom::recover() {
         self->on_journal_read(std::move(contents));
       });
     });
+  } else if (recovery_.metadata_outdated) {
+    recovery_.working = true;
+    boost::asio::post(services_.workers, [self = shared_from_this(), up = model_.up,
+                                          suspensions = recovery_.suspensions] {
+      auto metadata = read_metadata(self->services_.store, self->model_id_);
+      std::shared_ptr<const mesh::ContactShadow> shadow;
+      if (metadata && metadata->model.up != up)
+        shadow = self->make_contact_shadow(metadata->model.up);
+      boost::asio::post(self->strand_, [self, suspensions, metadata = std::move(metadata),
+                                        shadow = std::move(shadow)]() mutable {
+        self->on_metadata_read(suspensions, metadata, std::move(shadow));
+      });
+    });
   } else {
     recovery_.retry_in = Recovery::kFirstRetry;
     pipeline_->resume();
@@ -68,9 +86,9 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
     std::lock_guard lock(mutex_);
     for (auto& [id, state] : read) {
       auto known = layers_.find(id);
-      if (known == layers_.end()) {
-        // The layer was made by a request whose response was lost. This is rare, so all data is
-        // uploaded again.
+      if (known == layers_.end() || known->second.layer.type != state.layer.type) {
+        // The layer was made or widened by a request whose response was lost. This is rare, so all
+        // data is uploaded again.
         recovery_.gpu_lacks_all = true;
         continue;
       }
@@ -95,15 +113,14 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
   pipeline_->journal_read(contents->last_sequence);
   sequence_ = durable_ = contents->last_sequence;
 
-  for (const auto& [id, tiles] : contents->differing) {
-    pipeline_->gpu_lacks(id, tiles);
+  for (const auto& [id, tiles] : contents->differing) pipeline_->gpu_lacks(id, tiles);
+  for (const auto& [id, state] : read) {
     const auto known = before.find(id);
-    participants_part_->tell_layer(
-        known == before.end() ? std::nullopt : std::optional(known->second.layer.visibility),
-        read.at(id).layer);
+    if (known == before.end())
+      participants_part_->tell_layer(std::nullopt, state.layer);
+    else if (contents->differing.contains(id) || known->second.layer.version != state.layer.version)
+      participants_part_->tell_layer(known->second.layer.visibility, state.layer);
   }
-  for (const auto& [id, state] : read)
-    if (!before.contains(id)) participants_part_->tell_layer(std::nullopt, state.layer);
   for (const auto& [id, state] : before) {
     if (read.contains(id)) continue;
     remove_layer(services_.renderer, state.handles);
@@ -114,6 +131,31 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
   participants_part_->styles_changed();
   log::info("model " + to_string(model_id_) + " was read from the journal again, up to edit " +
             std::to_string(contents->last_sequence));
+  recover();
+}
+
+void OpenRoom::on_metadata_read(int suspensions_before, const Result<ModelMetadata>& metadata,
+                                std::shared_ptr<const mesh::ContactShadow> shadow) {
+  recovery_.working = false;
+  if (recovery_.closed) return;
+  if (suspensions_before != recovery_.suspensions) return recover();
+  if (!metadata && metadata.error().code == ErrorCode::not_found) return deposed(metadata.error());
+  if (!metadata) return retry_recovery(metadata.error());
+  const auto is_known = [&](const Layer& layer) {
+    const LayerState* known = find_layer(layer.id);
+    return known && known->layer.type == layer.type;
+  };
+  if (metadata->layers.size() != layers_.size() ||
+      !std::ranges::all_of(metadata->layers, is_known)) {
+    recovery_.journal_differs = true;  // then the metadata are read again
+    return recover();
+  }
+  recovery_.metadata_outdated = false;
+  for (const Layer& layer : metadata->layers)
+    if (layer.version > find_layer(layer.id)->layer.version) layers_part_->replace(layer);
+  surface_images_part_->replace(metadata->images);
+  if (metadata->model.version > model_.version) replace_model(metadata->model, std::move(shadow));
+  report_current();
   recover();
 }
 

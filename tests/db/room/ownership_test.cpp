@@ -13,6 +13,8 @@
 #include "room/participants.h"
 #include "room/queries.h"
 #include "room/rooms.h"
+#include "store/content/layers.h"
+#include "store/content/models.h"
 #include "store/content/trash.h"
 #include "store/journal/journal_reads.h"
 #include "store/nodes/nodes.h"
@@ -33,8 +35,14 @@ class Follower : public room::Listener {
  public:
   void edit_applied(const Edit&) override {}
   void edits_unsaved(const std::vector<Edit>&, const Error&) override {}
-  void layer_changed(LayerChange, const Layer&) override {}
-  void model_changed(const Model&) override {}
+  void layer_changed(LayerChange change, const Layer& layer) override {
+    std::lock_guard lock(mutex_);
+    layers_.emplace_back(change, layer.slug);
+  }
+  void model_changed(const Model& model) override {
+    std::lock_guard lock(mutex_);
+    models_.push_back(model.name);
+  }
   void surface_image_changed(LayerChange, const SurfaceImage&) override {}
   void model_deleted() override {}
   void presence_changed() override {}
@@ -61,6 +69,14 @@ class Follower : public room::Listener {
     EXPECT_TRUE(changed_.wait_for(lock, kLong, [&] { return reachable_.size() >= count; }));
     return reachable_;
   }
+  std::vector<std::pair<LayerChange, std::string>> layers() {
+    std::lock_guard lock(mutex_);
+    return layers_;
+  }
+  std::vector<std::string> models() {
+    std::lock_guard lock(mutex_);
+    return models_;
+  }
   std::vector<std::string> urls() {
     std::lock_guard lock(mutex_);
     return urls_;
@@ -69,7 +85,8 @@ class Follower : public room::Listener {
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<std::string> urls_;
+  std::vector<std::string> urls_, models_;
+  std::vector<std::pair<LayerChange, std::string>> layers_;
   std::vector<bool> reachable_;
 };
 
@@ -371,6 +388,70 @@ TEST_F(TwoNodes, a_journal_with_more_edits_is_read_before_the_model_is_saved_aga
   EXPECT_EQ(send(stroke(layer, 6, {{320, 240}}, 20))->sequence, 3);
   expect_room_equals_journal(layer);
   EXPECT_THAT(follower.urls(), ::testing::IsEmpty());
+  participant.reset();
+}
+
+TEST_F(TwoNodes, changes_whose_responses_were_lost_are_read_before_the_model_is_saved_again) {
+  using Change = room::Listener::LayerChange;
+  using ::testing::Pair;
+  Layer layer = make_layer(ValueType::u8, 2048, "find");
+  ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
+  const auto open_on_a = room();
+  Follower owner, guest;
+  const auto ignored = [](const stream::FrameMessages&) {};
+  auto first = open_on_a->participants().join({"anna", Role::owner}, {}, &owner, ignored);
+  auto second = open_on_a->participants().join({"gus", Role::guest}, {}, &guest, ignored);
+  rooms_->suspend();
+  // The room does not know these changes, as if their responses were lost.
+  layer = store_->layers().find(model_.id, to_string(layer.id), Role::owner).value();
+  layer.visibility = Visibility::curators;
+  ASSERT_TRUE(store_->layers().update(layer));
+  Model model = store_->models().find("pot").value();
+  model.name = "Amphora";
+  ASSERT_TRUE(store_->models().update(model));
+  rooms_->resume();
+  EXPECT_THAT(owner.wait_for_reachable(2), ::testing::ElementsAre(false, true));
+  EXPECT_THAT(guest.wait_for_reachable(2), ::testing::ElementsAre(false, true));
+  EXPECT_EQ(open_on_a->layers().find(layer.slug)->visibility, Visibility::curators);
+  EXPECT_EQ(open_on_a->model().name, "Amphora");
+  EXPECT_THAT(owner.layers(), ::testing::ElementsAre(Pair(Change::changed, layer.slug)));
+  EXPECT_THAT(guest.layers(), ::testing::ElementsAre(Pair(Change::deleted, layer.slug)));
+  EXPECT_THAT(owner.models(), ::testing::ElementsAre("Amphora"));
+  EXPECT_EQ(send(stroke(layer, 6, {{320, 240}}, 20))->sequence, 2);
+  first.reset();
+  second.reset();
+}
+
+TEST_F(TwoNodes,
+       layers_that_changed_without_a_response_are_loaded_before_the_model_is_saved_again) {
+  using Change = room::Listener::LayerChange;
+  using ::testing::Pair;
+  Layer wide = make_layer(ValueType::u8, 2048, "wide"),
+        gone = make_layer(ValueType::u8, 2048, "gone");
+  ASSERT_TRUE(send(stroke(wide, 5, {{300, 240}}, 20)));
+  const auto open_on_a = room();
+  Follower follower;
+  auto participant = open_on_a->participants().join({"anna", Role::owner}, {}, &follower,
+                                                    [](const stream::FrameMessages&) {});
+  rooms_->suspend();
+  wide = store_->layers().find(model_.id, to_string(wide.id), Role::owner).value();
+  ASSERT_TRUE(store_->layers().widen(wide, ValueType::u16));
+  ASSERT_TRUE(store_->trash().put_layer(gone.id, {}));
+  Layer made = wide;
+  made.name = made.slug = "made";
+  made.type = ValueType::u8;
+  made = store_->layers().create(made).value();
+  rooms_->resume();
+  EXPECT_THAT(follower.wait_for_reachable(2), ::testing::ElementsAre(false, true));
+  EXPECT_THAT(follower.layers(), ::testing::UnorderedElementsAre(Pair(Change::changed, wide.slug),
+                                                                 Pair(Change::deleted, gone.slug),
+                                                                 Pair(Change::created, made.slug)));
+  wide.type = ValueType::u16;
+  EXPECT_EQ(send_until_taken(stroke(wide, 1000, {{320, 240}}, 20))->sequence, 2);
+  EXPECT_EQ(send_until_taken(stroke(made, 7, {{320, 240}}, 20))->sequence, 3);
+  expect_room_equals_journal(wide);
+  expect_room_equals_journal(made);
+  expect_picture_of_journal();
   participant.reset();
 }
 
