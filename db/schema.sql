@@ -770,7 +770,7 @@ CREATE FUNCTION public.send_to_nodes(of_kind text, of_event text, of_project big
     LANGUAGE plpgsql
     AS $_$
 BEGIN
-  IF NOT EXISTS (SELECT FROM nodes) THEN
+  IF NOT EXISTS (SELECT FROM nodes WHERE lease_until > clock_timestamp() - interval '10 minutes') THEN
     RETURN;
   END IF;
   INSERT INTO node_messages (from_node, kind, event, project_id, model_id, subject_ids, sequence, user_name)

@@ -124,6 +124,16 @@ TEST_F(MessagesWithoutNodes, a_site_without_nodes_writes_no_messages) {
   EXPECT_THAT(read(reader_), ElementsAre("tool created"));
 }
 
+TEST_F(MessagesOfNodes, nodes_that_ended_long_ago_get_no_messages) {
+  script(connection_, "UPDATE nodes SET lease_until = clock_timestamp() - interval '1 hour'");
+  script(connection_, new_tool("star"));
+  EXPECT_EQ(count(), 0);
+  // A node that has just lost its lease may continue, and then needs the messages.
+  script(connection_, "UPDATE nodes SET lease_until = clock_timestamp() - interval '1 minute'");
+  script(connection_, new_tool("cross"));
+  EXPECT_EQ(count(), 1);
+}
+
 TEST_F(MessagesOfNodes, a_node_reads_the_changes_of_the_others_once) {
   NodeMessages own(dsn_, b_.id);
   ASSERT_TRUE(own.read());
