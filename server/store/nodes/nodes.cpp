@@ -83,6 +83,15 @@ Result<Error> claim_problem(PgConnection& connection, ModelId model,
 }  // namespace
 
 std::string with_sessions_of(const Uuid& node, const std::string& dsn) {
+  // libpq also accepts the plain name of a database, but only if it is alone.
+  if (!dsn.empty() && dsn.find('=') == std::string::npos && dsn.find("://") == std::string::npos) {
+    std::string quoted;
+    for (const char each : dsn) {
+      if (each == '\\' || each == '\'') quoted += '\\';
+      quoted += each;
+    }
+    return with_sessions_of(node, "dbname='" + quoted + "'");
+  }
   const bool is_url = dsn.starts_with("postgresql://") || dsn.starts_with("postgres://");
   const char* separator = !is_url ? " " : dsn.find('?') == std::string::npos ? "?" : "&";
   return dsn + separator + "application_name=" + kSessionPrefix + to_string(node);
@@ -157,10 +166,18 @@ Result<void> Nodes::forget_ended() {
 }
 
 Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self) {
-  auto claimed = try_claim(model, self);
-  if (claimed || claimed.error().code != ErrorCode::busy) return claimed;
-  STRATA_TRY(end_sessions_of_owner(model));
-  return try_claim(model, self);
+  bool asked = false;
+  auto claimed = try_claim(model, self, asked);
+  // Without a free connection, the claim is `busy` as well, but nobody has locked the model.
+  if (claimed || claimed.error().code != ErrorCode::busy || !asked) return claimed;
+  if (auto ended = end_sessions_of_owner(model); !ended) {
+    log::warning("nodes: model " + to_string(model) +
+                 " is locked, and the sessions of its former owner could not be ended. All nodes "
+                 "must use the same role of PostgreSQL: " +
+                 ended.error().detail);
+    return claimed;
+  }
+  return try_claim(model, self, asked);
 }
 
 void Nodes::drop_connections() { pool_.drop_connections(); }
@@ -171,8 +188,16 @@ std::unique_ptr<NodeMessages> Nodes::messages(const Uuid& self) {
 
 // After a wait for a concurrent claim, the condition is checked again, so only one of two claims
 // for the same reason succeeds.
-Result<std::int64_t> Nodes::try_claim(ModelId model, const std::optional<Uuid>& self) {
+Result<std::int64_t> Nodes::try_claim(ModelId model, const std::optional<Uuid>& self, bool& asked) {
   return pool_.write_within(kClaimLimits, [&](PgConnection& connection) -> Result<std::int64_t> {
+    asked = true;
+    // The update below sees the leases at its begin, but may wait for the row of the model. An
+    // owner that continues meanwhile cannot join again until this transaction has ended, so it
+    // compares its room with the journal after the claim.
+    STRATA_TRY(
+        connection.query("SELECT FROM models m JOIN nodes n ON n.id = m.owner_node "
+                         "WHERE m.id = $1 AND n.lease_until <= clock_timestamp() FOR SHARE OF n",
+                         Params().id(model)));
     Params params;
     params.id(model);
     auto claimed = STRATA_TRY(connection.query(

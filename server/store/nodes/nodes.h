@@ -106,6 +106,7 @@ class Nodes {
   // `moved`, with the address of the owner. Returns `unavailable` if `self` has no lease or drains.
   // A node that hangs can keep the row of the model locked, because PostgreSQL waits for the end
   // of its transaction. If the lease of such an owner has ended, ends its sessions that write.
+  // PostgreSQL permits this if all nodes use the same role. Returns `busy` if the row stays locked.
   Result<std::int64_t> claim(ModelId model, const std::optional<Uuid>& self);
   // Returns a new epoch without an owner, even if a node has claimed the model. Used by code that
   // writes the journal without a room: a room that is open on any server is closed when it next
@@ -129,7 +130,8 @@ class Nodes {
   Result<std::optional<Node>> another(const Uuid& self);
 
  private:
-  Result<std::int64_t> try_claim(ModelId model, const std::optional<Uuid>& self);
+  // Sets `asked` when a connection was free.
+  Result<std::int64_t> try_claim(ModelId model, const std::optional<Uuid>& self, bool& asked);
   // Ends the sessions of the owner that write, if its lease has ended.
   Result<void> end_sessions_of_owner(ModelId model);
   // Runs a statement on the connection of the lease. Returns the number of affected rows.

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <map>
@@ -141,6 +142,33 @@ TEST_F(OwnershipOfModels, a_claim_ends_no_session_of_others) {
   EXPECT_EQ(nodes_.claim(model_.id, b_.id).value(), 2);
 }
 
+TEST_F(OwnershipOfModels, an_owner_cannot_join_again_while_its_model_is_being_claimed) {
+  ASSERT_TRUE(join(a_));
+  ASSERT_TRUE(join(b_));
+  ASSERT_TRUE(nodes_.claim(model_.id, a_.id));
+  end_lease(a_.id);
+  // Node b waits for this lock, as for that of a frozen owner.
+  auto holder = std::move(PgConnection::connect(dsn_).value());
+  ASSERT_TRUE(holder.script("BEGIN; UPDATE models SET sequence = sequence"));
+  const auto may_join = [&] {
+    return connection_
+        .query("SELECT FROM nodes WHERE id = $1 FOR UPDATE NOWAIT", Params().uuid(a_.id))
+        .has_value();
+  };
+  ASSERT_TRUE(may_join());
+  std::atomic<bool> ends = false;
+  std::thread claims([&] {
+    while (!ends) (void)nodes_.claim(model_.id, b_.id);
+  });
+  bool waits = false;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+  while (!waits && std::chrono::steady_clock::now() < deadline) waits = !may_join();
+  ends = true;
+  EXPECT_TRUE(holder.script("ROLLBACK"));
+  claims.join();
+  EXPECT_TRUE(waits);
+}
+
 TEST_F(OwnershipOfModels, after_an_outage_the_store_uses_no_earlier_connection) {
   const Uuid node = random_uuid();
   const auto store = test::open_store(with_sessions_of(node, dsn_));
@@ -171,6 +199,8 @@ TEST(WithSessionsOf, names_the_sessions_of_both_kinds_of_connection_strings) {
   const std::string named = "application_name=strata-00000000-0000-4000-8000-00000000000a";
   EXPECT_EQ(with_sessions_of(node, "host=db application_name=x"),
             "host=db application_name=x " + named);
+  EXPECT_EQ(with_sessions_of(node, "strata"), "dbname='strata' " + named);
+  EXPECT_EQ(with_sessions_of(node, "it's"), "dbname='it\\'s' " + named);
   EXPECT_EQ(with_sessions_of(node, "postgresql://db/strata"), "postgresql://db/strata?" + named);
   EXPECT_EQ(with_sessions_of(node, "postgres://db/strata?sslmode=require"),
             "postgres://db/strata?sslmode=require&" + named);
