@@ -81,14 +81,24 @@ Result<void> run_program(const std::vector<std::string>& command, const fs::path
   });
 }
 
-// Returns the path of a program that is not older than the server whose data it reads.
-Result<fs::path> program_for(PgConnection& connection, const char* name) {
+// pg_restore of this version and later begins with a setting that older servers do not have
+// (transaction_timeout).
+constexpr int kSetsTransactionTimeout = 17;
+
+// Returns the path of pg_dump or pg_restore. Prefers the version of the server. A newer pg_dump
+// reads each older server, but a newer pg_restore cannot write to each of them.
+Result<fs::path> program_for(PgConnection& connection, const char* name, bool writes) {
   auto version =
       STRATA_TRY(connection.query("SELECT current_setting('server_version_num')::int8 / 10000"));
   std::error_code error;
-  if (const auto same = find_programs(static_cast<int>(version.integer(0, 0)));
-      same && fs::exists(*same / name, error))
+  const int wanted = static_cast<int>(version.integer(0, 0));
+  if (const auto same = find_programs(wanted); same && fs::exists(*same / name, error))
     return *same / name;
+  if (writes && wanted < kSetsTransactionTimeout &&
+      installed_programs().rbegin()->first >= kSetsTransactionTimeout)
+    return fail(ErrorCode::unsupported, "Program missing",
+                "A newer pg_restore cannot restore into PostgreSQL " + std::to_string(wanted) +
+                    ". Install postgresql-client-" + std::to_string(wanted) + ".");
   const auto newest = STRATA_TRY(find_programs(0));
   return newest / name;
 }
@@ -259,7 +269,7 @@ Result<void> write_file(const fs::path& file, const std::string& text) {
 
 Result<void> dump(PgConnection& connection, const std::string& dsn, const std::string& snapshot,
                   const fs::path& folder, std::uint64_t database_bytes, Progress& progress) {
-  const auto pg_dump = STRATA_TRY(program_for(connection, "pg_dump"));
+  const auto pg_dump = STRATA_TRY(program_for(connection, "pg_dump", false));
   // not in the folder of the backup, because that disk may be full
   const auto scratch = STRATA_TRY(ScratchFolder::make("backup"));
   const auto client = STRATA_TRY(hide_password(dsn, scratch.folder() / "password"));
@@ -350,7 +360,7 @@ Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts,
         "A backup can be restored only into an empty database. This database has the table " +
             there.front().name + ".",
         "--database");
-  const auto pg_restore = STRATA_TRY(program_for(connection, "pg_restore"));
+  const auto pg_restore = STRATA_TRY(program_for(connection, "pg_restore", true));
 
   const auto scratch = STRATA_TRY(ScratchFolder::make("backup"));
   const auto client = STRATA_TRY(hide_password(dsn, scratch.folder() / "password"));

@@ -327,7 +327,8 @@ struct Cluster::Impl {
       if (Clock::now() >= deadline)
         return fail(ErrorCode::unavailable, "Database not started",
                     "PostgreSQL in " + folder.string() + " did not start: " + tail(log_file));
-      end_postmaster(data, 0s);  // left by a killed pg_upgrade; later attempts wait for its end
+      // Left by a killed pg_upgrade; later attempts wait for its end.
+      end_postmaster(data, 0s, true);
       std::this_thread::sleep_for(100ms);
     }
   }

@@ -117,7 +117,19 @@ std::vector<std::string> initdb_command(const fs::path& programs, const fs::path
           "--no-instructions"};
 }
 
-bool end_postmaster(const fs::path& pgdata, std::chrono::seconds patience) {
+namespace {
+
+// pg_upgrade starts PostgreSQL with the option -b.
+bool is_of_upgrade(pid_t pid) {
+  std::ifstream command("/proc/" + std::to_string(pid) + "/cmdline", std::ios::binary);
+  for (std::string word; std::getline(command, word, '\0');)
+    if (word == "-b") return true;
+  return false;
+}
+
+}  // namespace
+
+bool end_postmaster(const fs::path& pgdata, std::chrono::seconds patience, bool only_of_upgrade) {
   pid_t pid = 0;
   std::ifstream(pgdata / "postmaster.pid") >> pid;
   if (pid <= 1) return true;
@@ -130,6 +142,7 @@ bool end_postmaster(const fs::path& pgdata, std::chrono::seconds patience) {
     return fs::read_symlink(place, gone) != data || gone;
   };
   if (ended()) return true;
+  if (only_of_upgrade && !is_of_upgrade(pid)) return false;
   kill(pid, SIGINT);  // a fast shutdown, which writes a checkpoint
   const auto deadline = std::chrono::steady_clock::now() + patience;
   while (!ended()) {

@@ -42,8 +42,11 @@ std::vector<std::string> initdb_command(const std::filesystem::path& programs,
 
 // Stops a postmaster that has the data open, although no server of Strata uses the data. If `strata
 // upgrade-database` is killed, the postmaster that pg_upgrade has started continues. The caller
-// must have the lock of the folder. Returns true if no postmaster is left after `patience`.
-bool end_postmaster(const std::filesystem::path& pgdata, std::chrono::seconds patience);
+// must have the lock of the folder. With `only_of_upgrade`, does not stop a postmaster that was
+// started in another way, such as by an administrator. Returns true if no postmaster is left after
+// `patience`.
+bool end_postmaster(const std::filesystem::path& pgdata, std::chrono::seconds patience,
+                    bool only_of_upgrade = false);
 
 // Makes `user` the owner of the folder, sets its mode to 0700, and verifies in a child process that
 // this user can enter it.

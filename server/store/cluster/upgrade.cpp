@@ -10,12 +10,17 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
+#include <condition_variable>
 #include <cstring>
 #include <fstream>
 #include <initializer_list>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <stop_token>
+#include <thread>
 
 #include "store/cluster/archive_folder.h"
 #include "store/cluster/cluster.h"
@@ -34,6 +39,10 @@ using Method = UpgradePlan::Method;
 constexpr auto kEndPatience = 30s;
 constexpr std::uintmax_t kSpareBytes = 256u
                                        << 20;  // the system tables and the WAL of a new cluster
+constexpr std::uintmax_t kMostLogBytes = 2u << 30;  // max_wal_size (cluster.cpp)
+// A rehearsal leaves this for the running server: without space, its PostgreSQL stops.
+constexpr std::uintmax_t kBytesOfServer = 1u << 30;
+constexpr std::uintmax_t kFewBytesOfServer = 512u << 20;  // then the rehearsal is cancelled
 constexpr std::size_t kMaxReportBytes = 4000;
 constexpr int kChecksumsByDefault = 18;  // since this version, initdb turns checksums on
 
@@ -143,6 +152,30 @@ Result<bool> owns_files(const std::string& dsn) {
       sql("SELECT 1 FROM public.file_store WHERE starts_with(owner, ", kDatabaseId, " || '/')")));
   return row.rows() > 0;
 }
+
+// Cancels a rehearsal beside a running server when the disk is nearly full.
+class SpaceWatch {
+ public:
+  SpaceWatch(const UpgradePlan& plan, Progress& progress)
+      : watcher_([this, folder = plan.data, &progress](const std::stop_token& stop) {
+          std::mutex mutex;
+          std::unique_lock lock(mutex);
+          std::condition_variable_any stopped;
+          while (!stopped.wait_for(lock, stop, 1s, [] { return false; }) &&
+                 !stop.stop_requested()) {
+            std::error_code error;
+            const auto space = fs::space(folder, error);
+            if (error || space.available >= kFewBytesOfServer) continue;
+            ran_out_ = true;
+            return progress.cancel();
+          }
+        }) {}
+  bool ran_out() const { return ran_out_; }
+
+ private:
+  std::atomic<bool> ran_out_{false};
+  std::jthread watcher_;  // the first to end
+};
 
 // --- one upgrade
 
@@ -348,8 +381,15 @@ Result<UpgradeReport> upgrade_or_rehearse(const UpgradePlan& plan, bool rehearse
   auto user = STRATA_TRY(database_user());
   Upgrade upgrade(plan, std::move(user), progress);
   UpgradeReport report;
-  auto facts = STRATA_TRY(upgrade.make());
-  report.facts = std::move(facts);
+  std::optional<SpaceWatch> watch;
+  if (plan.running) watch.emplace(plan, progress);
+  auto made = upgrade.make();
+  if (!made && watch && watch->ran_out())
+    return fail(ErrorCode::storage_full, "Disk too full",
+                "The rehearsal stopped, because the disk of " + plan.data.string() +
+                    " was nearly full. The running server needs the rest.");
+  if (!made) return tl::unexpected(made.error());
+  report.facts = std::move(*made);
   if (!rehearse) STRATA_TRY(upgrade.put_into_place());
   report.took = std::chrono::ceil<std::chrono::seconds>(std::chrono::steady_clock::now() - begun);
   return report;
@@ -360,7 +400,10 @@ Result<UpgradeReport> upgrade_or_rehearse(const UpgradePlan& plan, bool rehearse
 std::uintmax_t UpgradePlan::needed_bytes(bool rehearse) const {
   const std::uintmax_t copies = method == Method::clone ? 0 : method == Method::copy ? 1 : 2;
   const bool needs_copy = rehearse && running && method != Method::dump;
-  return (copies + (needs_copy ? 1 : 0)) * bytes + kSpareBytes;
+  // pg_restore writes everything in one transaction, so the new cluster keeps a full log.
+  const std::uintmax_t log = method == Method::dump ? std::min(bytes, kMostLogBytes) : 0;
+  const std::uintmax_t of_server = rehearse && running ? kBytesOfServer : 0;
+  return (copies + (needs_copy ? 1 : 0)) * bytes + log + of_server + kSpareBytes;
 }
 
 Result<UpgradePlan> plan_upgrade(const fs::path& data_dir, bool dump) {

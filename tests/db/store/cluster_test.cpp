@@ -7,6 +7,7 @@
 #include <fstream>
 #include <thread>
 
+#include "store/cluster/cluster_process.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {
@@ -113,6 +114,16 @@ TEST(Cluster, the_database_stops_when_its_server_is_killed_and_a_new_server_take
   ASSERT_TRUE(cluster) << cluster.error().detail;
   EXPECT_EQ(ask((*cluster)->dsn(), "SELECT 1"), "1");
   EXPECT_NE((*cluster)->postmaster_pid(), postmaster);
+}
+
+TEST(Cluster, a_postmaster_that_somebody_else_started_is_not_ended) {
+  TemporaryFolder folder;
+  auto cluster = Cluster::start(folder.path());
+  ASSERT_TRUE(cluster) << cluster.error().detail;
+  const auto pgdata = folder.path() / "postgres" / "pgdata";
+  EXPECT_FALSE(end_postmaster(pgdata, std::chrono::seconds(0), true));
+  EXPECT_EQ(ask((*cluster)->dsn(), "SELECT 1"), "1");
+  EXPECT_TRUE(end_postmaster(pgdata, std::chrono::minutes(5)));
 }
 
 TEST(Cluster, a_folder_with_a_very_long_path_works) {
