@@ -15,6 +15,7 @@
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
 #include "store/journal/journal.h"
+#include "store/journal/tail.h"
 #include "store/journal/timeline.h"
 #include "store/journal/undo_steps.h"
 
@@ -72,6 +73,13 @@ class Journal {
   Result<HistoryPage> history(LayerId layer_id, int limit, int offset,
                               std::optional<std::int64_t> before = {});
   Result<JournalState> state(ModelId model_id, std::span<const Uuid> ids);
+  // Returns the states of several models in one query (tail.cpp). Models that were deleted are left
+  // out.
+  Result<std::map<ModelId, ModelState>> model_states(std::span<const ModelId> models);
+  // Returns the edits after a sequence and up to another one, oldest first. If there are more than
+  // `limit`, returns the newest ones.
+  Result<std::vector<TailEdit>> last_edits(ModelId model_id, std::int64_t after,
+                                           std::int64_t through, int limit);
   // Return the sequences, ascending, of a stroke of `user` on the layer, or nothing if there is no
   // such stroke. `undoable` returns the newest stroke in force. `redoable` returns the newest
   // undone stroke, unless a newer stroke of the same user is in force. `pending_only` selects only

@@ -1,0 +1,49 @@
+// What rooms of other nodes read after each change of a model.
+#include "store/journal/tail.h"
+
+#include "store/journal/journal_reads.h"
+#include "store/pg/pg_row.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+
+Result<std::map<ModelId, ModelState>> Journal::model_states(std::span<const ModelId> models) {
+  PgArray ids(oid::kInt8);
+  for (const ModelId id : models) ids.add(id);
+  return pool_.read([&](PgConnection& connection) -> Result<std::map<ModelId, ModelState>> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT m.id, m.sequence, m.owner_epoch, m.version, "
+        "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', l.id, l.version, l.computed_sequence), ',' "
+        "ORDER BY l.id), ''), 0) FROM layers l WHERE l.model_id = m.id), "
+        "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', i.id, i.version), ',' ORDER BY i.id), ''), 0) "
+        "FROM looks i WHERE i.model_id = m.id) FROM models m WHERE m.id = any($1)",
+        Params().array(ids)));
+    std::map<ModelId, ModelState> states;
+    for (int i = 0; i < rows.rows(); ++i) {
+      PgRow row(rows, i);
+      const auto id = row.id<ModelId>();
+      states[id] = {row.integer(), row.integer(), row.integer(), row.integer(), row.integer()};
+    }
+    return states;
+  });
+}
+
+Result<std::vector<TailEdit>> Journal::last_edits(ModelId model_id, std::int64_t after,
+                                                  std::int64_t through, int limit) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::vector<TailEdit>> {
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT sequence, layer_id, id, stroke, user_name, op, coalesce(review = 'pending', false), "
+        "coalesce((answer ->> 'provisional')::boolean, false) "
+        "FROM edits WHERE model_id = $1 AND sequence > $2 AND sequence <= $3 ORDER BY sequence DESC LIMIT $4",
+        Params().id(model_id).integer(after).integer(through).integer(limit)));
+    std::vector<TailEdit> edits;
+    for (int i = rows.rows() - 1; i >= 0; --i) {
+      PgRow row(rows, i);
+      edits.push_back({row.integer(), row.id<LayerId>(), row.uuid(), row.uuid(), row.text(),
+                       row.text(), row.boolean(), row.boolean()});
+    }
+    return edits;
+  });
+}
+
+}  // namespace strata::store

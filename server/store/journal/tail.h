@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/ids.h"
+#include "core/uuid.h"
+
+namespace strata::store {
+
+// What a copy of a model at another node compares with the database (room/open/open_follower.h).
+struct ModelState {
+  std::int64_t sequence = 0;  // of the last edit
+  std::int64_t epoch = 0;     // of the newest claim (store/nodes/nodes.h)
+  std::int64_t version = 0;   // of the properties of the model
+  // Digests of the properties of the layers, without their content, and of the surface images.
+  std::int64_t layers = 0, images = 0;
+
+  bool operator==(const ModelState&) const = default;
+};
+
+// What users are told about an edit of another user.
+struct TailEdit {
+  std::int64_t sequence = 0;
+  LayerId layer_id = 0;
+  Uuid id, stroke;
+  std::string user, op;
+  bool pending = false;      // the edit waits for review
+  bool provisional = false;  // the edit waited for review when it was made
+};
+
+}  // namespace strata::store
