@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <set>
 #include <thread>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "core/give_back_memory.h"
 #include "core/log.h"
 #include "core/text/slug.h"
+#include "room/journal_tail.h"
 #include "room/layers.h"
 #include "room/open/open_room.h"
 #include "room/role_filtered_room.h"
@@ -88,8 +90,13 @@ struct Rooms::Impl {
     renderer.on_context_lost([this] {
       std::lock_guard lock(mutex);
       ++context_losses;
-      for (auto& [id, room] : rooms) room->gpu_lost();
+      for (const auto* open : {&rooms, &followers})
+        for (auto& [id, room] : *open) room->gpu_lost();
     });
+    if (options.node && options.follows)
+      tail = std::make_unique<JournalTail>(
+          store, JournalTail::Handlers{[this] { return all_in(followers); },
+                                       [this](const auto& room) { drop_deleted_follower(room); }});
     sweeper = std::thread([this] { sweep(); });
   }
 
@@ -100,19 +107,23 @@ struct Rooms::Impl {
       changed.notify_all();
     }
     sweeper.join();
+    tail.reset();
     renderer.on_context_lost({});
-    for (const auto& room : open_ones()) room->close(kStopping);
+    for (const auto& room : all_open()) room->close(kStopping);
     writer.drain();
     workers.join();
     readers.join();
     renderer.finish();  // so no callback is posted to a destroyed strand
     strands.join();
     rooms.clear();
+    followers.clear();
   }
 
-  std::shared_ptr<OpenRoom> find(const std::string& ref) {
+  using OpenRooms = std::map<ModelId, std::shared_ptr<OpenRoom>>;
+  std::shared_ptr<OpenRoom> find(const std::string& ref) { return find(ref, rooms); }
+  std::shared_ptr<OpenRoom> find(const std::string& ref, const OpenRooms& open) {
     std::lock_guard lock(mutex);
-    for (auto& [id, room] : rooms)
+    for (auto& [id, room] : open)
       if (is_all_digits(ref) ? to_string(id) == ref : room->model().slug == ref) {
         room->touch();
         return room;
@@ -120,7 +131,16 @@ struct Rooms::Impl {
     return nullptr;
   }
 
-  Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref);
+  // Opens a room with a claim, or one that follows another node.
+  enum class Use { claim, follow };
+  Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref, Use use);
+  // Returns the open room for this use. Call while holding `mutex`.
+  std::shared_ptr<OpenRoom> open_for(Use use, ModelId id) {
+    if (const auto found = rooms.find(id); found != rooms.end()) return found->second;
+    if (use == Use::claim) return nullptr;
+    const auto found = followers.find(id);
+    return found == followers.end() ? nullptr : found->second;
+  }
 
   // After a suspension, the room may lack edits of another node until it was compared with the
   // journal.
@@ -139,6 +159,34 @@ struct Rooms::Impl {
       ++models_moved;
     }
     room->close(why);
+  }
+
+  std::shared_ptr<OpenRoom> take_follower(ModelId id) {
+    std::lock_guard lock(mutex);
+    const auto found = followers.find(id);
+    if (found == followers.end()) return nullptr;
+    auto room = std::move(found->second);
+    followers.erase(found);
+    return room;
+  }
+
+  // Closes a room that follows another node, because this node has the model now or stops. Its
+  // participants connect again.
+  void drop_follower(ModelId id, const Error& why) {
+    const auto room = take_follower(id);
+    if (!room) return;
+    room->move_away(why);
+    room->close(why);
+  }
+
+  void drop_deleted_follower(const std::shared_ptr<OpenRoom>& room) {
+    {
+      std::lock_guard lock(mutex);
+      const auto found = followers.find(room->id());
+      if (found == followers.end() || found->second != room) return;
+      followers.erase(found);
+    }
+    room->close_deleted();
   }
 
   // Without a lease, the database is probably unreachable, and the claims end with the lease.
@@ -174,10 +222,10 @@ struct Rooms::Impl {
       const auto now = std::chrono::steady_clock::now();
       bool closed = close_rooms([&](const OpenRoom& room) { return room.is_idle(now); },
                                 "because nobody uses it");
-      for (const auto& room : open_ones()) closed |= room->drop_large_unused_maps(now);
+      for (const auto& room : all_open()) closed |= room->drop_large_unused_maps(now);
       if (std::exchange(due, false)) give_back_memory();
       std::size_t here = 0;
-      for (const auto& room : open_ones()) {
+      for (const auto& room : all_open()) {
         here += room->participant_count();
         departed += room->take_leave_count();
       }
@@ -193,8 +241,9 @@ struct Rooms::Impl {
     std::vector<std::pair<SurfaceMaps::Clock::time_point, std::shared_ptr<OpenRoom>>> by_use;
     {
       std::lock_guard lock(mutex);
-      for (auto& [id, room] : rooms)
-        if (const auto use = room->maps().oldest_use()) by_use.emplace_back(*use, room);
+      for (const auto* open : {&rooms, &followers})
+        for (auto& [id, room] : *open)
+          if (const auto use = room->maps().oldest_use()) by_use.emplace_back(*use, room);
     }
     std::sort(by_use.begin(), by_use.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -208,21 +257,22 @@ struct Rooms::Impl {
                        "because another model needs its memory");
   }
 
-  // Closes rooms that are not used by a request and have no edit in progress. `rooms` holds the
-  // only reference to such a room.
+  // Closes rooms that are not used by a request and have no edit in progress. `rooms` or `followers`
+  // holds the only reference to such a room.
   bool close_rooms(const std::function<bool(const OpenRoom&)>& may_close, const char* why) {
     std::vector<std::shared_ptr<OpenRoom>> leaving;
     {
       std::lock_guard lock(mutex);
       if (suspended) return false;  // a room that is closed must be released in the database
-      for (auto found = rooms.begin(); found != rooms.end();) {
-        if (found->second.use_count() == 1 && may_close(*found->second)) {
-          leaving.push_back(std::move(found->second));
-          found = rooms.erase(found);
-        } else {
-          ++found;
+      for (auto* open : {&rooms, &followers})
+        for (auto found = open->begin(); found != open->end();) {
+          if (found->second.use_count() == 1 && may_close(*found->second)) {
+            leaving.push_back(std::move(found->second));
+            found = open->erase(found);
+          } else {
+            ++found;
+          }
         }
-      }
     }
     for (auto& room : leaving) {
       room->close(kClosing);
@@ -232,11 +282,19 @@ struct Rooms::Impl {
     return !leaving.empty();
   }
 
-  std::vector<std::shared_ptr<OpenRoom>> open_ones() {
+  std::vector<std::shared_ptr<OpenRoom>> all_in(const OpenRooms& open) {
     std::lock_guard lock(mutex);
-    std::vector<std::shared_ptr<OpenRoom>> open;
-    for (const auto& [id, room] : rooms) open.push_back(room);
-    return open;
+    std::vector<std::shared_ptr<OpenRoom>> all;
+    for (const auto& [id, room] : open) all.push_back(room);
+    return all;
+  }
+  // Returns the rooms with a claim.
+  std::vector<std::shared_ptr<OpenRoom>> open_ones() { return all_in(rooms); }
+  // Also returns the rooms that follow other nodes.
+  std::vector<std::shared_ptr<OpenRoom>> all_open() {
+    auto all = open_ones();
+    std::ranges::copy(all_in(followers), std::back_inserter(all));
+    return all;
   }
 
   render::Renderer& renderer;
@@ -248,7 +306,8 @@ struct Rooms::Impl {
   const RoomServices services;
   std::mutex mutex;
   std::condition_variable changed;
-  std::map<ModelId, std::shared_ptr<OpenRoom>> rooms;
+  OpenRooms rooms;      // with a claim
+  OpenRooms followers;  // of models that other nodes have
   std::set<ModelId> opening, deleted_meanwhile;
   std::atomic<int> context_losses{0};
   std::atomic<std::uint64_t> models_moved{0};
@@ -256,6 +315,7 @@ struct Rooms::Impl {
   bool suspended = false;
   bool stopping = false;
   bool draining = false;
+  std::unique_ptr<JournalTail> tail;  // null: this server follows no other node
   std::thread sweeper;
 };
 
@@ -266,15 +326,31 @@ Rooms::Rooms(store::Store& store, render::Renderer& renderer, const stream::Stre
 Rooms::~Rooms() = default;
 
 Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref, Role seen_by) {
-  auto room = STRATA_TRY(impl_->open(model_ref));
+  auto room = STRATA_TRY(impl_->open(model_ref, Impl::Use::claim));
   return seen_as(std::move(room), seen_by);
 }
 
-Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref) {
+Result<std::shared_ptr<Room>> Rooms::follow(const std::string& model_ref, Role seen_by) {
+  auto room = STRATA_TRY(impl_->open(model_ref, Impl::Use::follow));
+  return seen_as(std::move(room), seen_by);
+}
+
+bool Rooms::may_follow() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->tail && !impl_->draining;
+}
+
+bool Rooms::is_followed(const std::string& model_ref) const {
+  return impl_->find(model_ref, impl_->followers) != nullptr;
+}
+
+Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref, Use use) {
   if (is_suspended()) return tl::unexpected(kNoLease);
   // Finds an open room without the database, so viewing continues while the database is
   // unreachable.
   if (auto room = find(model_ref)) return current(std::move(room));
+  if (auto room = use == Use::follow ? find(model_ref, followers) : nullptr)
+    return current(std::move(room));
   auto model = STRATA_TRY(services.store.models().find(model_ref));
   const int losses_before = context_losses;
   int suspensions_before = 0;
@@ -286,15 +362,23 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
     if (stopping || draining) return tl::unexpected(kStopping);
     if (suspended) return tl::unexpected(kNoLease);
     suspensions_before = suspensions;
-    if (auto found = rooms.find(model.id); found != rooms.end()) {
-      found->second->touch();
-      return current(found->second);
+    if (auto found = open_for(use, model.id)) {
+      found->touch();
+      return current(std::move(found));
     }
     opening.insert(model.id);
   }
-  auto room = OpenRoom::open(services, to_string(model.id));
-  if (!room && room.error().code == ErrorCode::out_of_memory && close_empty_rooms())
-    room = OpenRoom::open(services, to_string(model.id));
+  const auto load = [&] {
+    const auto ref = to_string(model.id);
+    return use == Use::claim ? OpenRoom::open(services, ref) : OpenRoom::follow(services, ref);
+  };
+  auto room = load();
+  if (!room && room.error().code == ErrorCode::out_of_memory) {
+    if (use == Use::claim) drop_follower(model.id, moved_to({}));
+    close_empty_rooms();
+    room = load();
+  }
+  if (room && use == Use::claim) drop_follower(model.id, moved_to({}));
   std::unique_lock lock(mutex);
   opening.erase(model.id);
   changed.notify_all();
@@ -312,14 +396,14 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
     if (!deleted) return tl::unexpected(kStopping);
     return fail(ErrorCode::not_found, "Not found", "The model was deleted.");
   }
-  rooms[model.id] = *room;
+  (use == Use::claim ? rooms : followers)[model.id] = *room;
   // The GPU data of the room belongs to a lost context.
   if (context_losses != losses_before) (*room)->gpu_lost();
   return room;
 }
 
 void Rooms::records_changed(TableId table_id) {
-  for (const auto& room : impl_->open_ones()) room->layers().records_changed(table_id);
+  for (const auto& room : impl_->all_open()) room->layers().records_changed(table_id);
 }
 
 Result<void> Rooms::retire_key(TableId table_id, std::int64_t key) {
@@ -349,6 +433,7 @@ void Rooms::admit_keys(TableId table_id, std::span<const std::int64_t> keys) {
 }
 
 void Rooms::forget(ModelId model_id) {
+  if (const auto follower = impl_->take_follower(model_id)) follower->close_deleted();
   std::shared_ptr<OpenRoom> room;
   {
     std::lock_guard lock(impl_->mutex);
@@ -385,7 +470,7 @@ void Rooms::suspend() {
     impl_->suspended = true;
     impl_->changed.notify_all();
   }
-  const auto rooms = impl_->open_ones();
+  const auto rooms = impl_->all_open();
   for (const auto& room : rooms) room->stop_saving(kNotSaving);
   if (!rooms.empty())
     log::warning(std::to_string(rooms.size()) +
@@ -399,14 +484,14 @@ void Rooms::resume() {
     impl_->changed.notify_all();
   }
   impl_->services.store.nodes().drop_connections();
-  for (const auto& room : impl_->open_ones()) room->continue_saving();
+  for (const auto& room : impl_->all_open()) room->continue_saving();
 }
 
 std::uint64_t Rooms::models_moved() const { return impl_->models_moved; }
 
 std::size_t Rooms::participants() const {
   std::size_t count = 0;
-  for (const auto& room : impl_->open_ones()) count += room->participant_count();
+  for (const auto& room : impl_->all_open()) count += room->participant_count();
   return count;
 }
 
@@ -417,7 +502,16 @@ const store::JournalWriter& Rooms::journal() const { return impl_->writer; }
 
 std::size_t Rooms::open_rooms() const {
   std::lock_guard lock(impl_->mutex);
-  return impl_->rooms.size();
+  return impl_->rooms.size() + impl_->followers.size();
+}
+
+std::size_t Rooms::followed_models() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->followers.size();
+}
+
+std::chrono::duration<double> Rooms::follower_lag() const {
+  return impl_->tail ? impl_->tail->lag() : std::chrono::duration<double>(0);
 }
 
 std::vector<Rooms::Claim> Rooms::claims() const {
@@ -437,6 +531,7 @@ void Rooms::drain() {
   const auto deadline = std::chrono::steady_clock::now() + impl_->services.options.drain_for;
   if (impl_->services.options.node) {
     const Error why = impl_->moved_elsewhere();
+    for (const auto& room : impl_->all_in(impl_->followers)) impl_->drop_follower(room->id(), why);
     // Passes on each room as soon as possible, because the users of the room wait.
     while (!rooms.empty() && std::chrono::steady_clock::now() < deadline) {
       const auto ready = std::ranges::stable_partition(

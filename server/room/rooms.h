@@ -44,6 +44,8 @@ struct RoomOptions {
   std::uint64_t memory_bytes = 0;
   // The id of this server as a node of a site (store/nodes/nodes.h). Empty if it is the only one.
   std::optional<Uuid> node{};
+  // Whether this node shows models of other nodes to viewers (Rooms::follow).
+  bool follows = true;
   // Edits that take longer are logged with the times of their stages. 0: no limit.
   std::chrono::milliseconds slow_after{1000};
 };
@@ -60,6 +62,15 @@ class Rooms {
   // is exhausted, closes empty rooms first. `seen_by` is the role of the user in the project. The
   // server itself uses owner, which sees everything.
   Result<std::shared_ptr<Room>> open(const std::string& model_ref, Role seen_by);
+  // Like `open`, for a caller who only looks at a model that another node has. The room follows the
+  // journal of the model: it shows each edit within half a second, as a rule, and refuses edits
+  // with `moved`. If this node claims the model later, listeners are notified (Listener::moved).
+  // Call only if `may_follow`.
+  Result<std::shared_ptr<Room>> follow(const std::string& model_ref, Role seen_by);
+  // Returns whether this server shows models of other nodes. False while it drains.
+  bool may_follow() const;
+  // Returns whether such a room of the model is open. Does not ask the database.
+  bool is_followed(const std::string& model_ref) const;
   // Calls Layers::records_changed in the open models.
   void records_changed(TableId table_id);
   // Refuses later edits with `conflict` if they would paint this key of the table. Edits that were
@@ -85,8 +96,13 @@ class Rooms {
   // Call when the node has a lease again. Each room is compared with the journal before it accepts
   // edits, and is closed if another node has claimed its model (Listener::moved).
   void resume();
+  // The number of open models, with those of other nodes.
   std::size_t open_rooms() const;
-  // The open models, with the epochs of their claims (store/nodes/nodes.h).
+  std::size_t followed_models() const;  // the number of open models of other nodes
+  // The time since every open model of other nodes showed everything that was in the database. 0 if
+  // there are none.
+  std::chrono::duration<double> follower_lag() const;
+  // The models that this server has claimed, with the epochs of their claims (store/nodes/nodes.h).
   struct Claim {
     ModelId model = 0;
     std::int64_t epoch = 0;

@@ -14,7 +14,7 @@ namespace strata::room {
 void OpenRoom::EditsPart::submit(EditRequest request, Applied applied, Saved saved) {
   room_.touch();
   // Other nodes can accept the edit immediately.
-  if (!room_.takes_edits_ && room_.services_.options.node)
+  if (room_.following_part_ || (!room_.takes_edits_ && room_.services_.options.node))
     return saved(tl::unexpected(moved_to({})));
   if (!room_.takes_edits_)
     return saved(

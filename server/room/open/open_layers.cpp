@@ -267,6 +267,49 @@ Result<store::TrashRestored> OpenRoom::LayersPart::restore(
   return restored;
 }
 
+Result<void> OpenRoom::LayersPart::take(const std::vector<Layer>& stored) {
+  std::map<LayerId, Layer> held;
+  for (Layer& layer : room_.layer_list()) held.emplace(layer.id, std::move(layer));
+  for (const auto& [id, layer] : held)
+    if (std::ranges::find(stored, id, &Layer::id) == stored.end())
+      STRATA_TRY(unload(id, [] { return Result<void>{}; }));
+  const auto computed = [](const Layer& layer) {
+    return layer.formula ? layer.formula->computed_sequence : 0;
+  };
+  for (const Layer& layer : stored) {
+    const auto known = held.find(layer.id);
+    if (known == held.end())
+      STRATA_TRY(room_.exclusively<void>([this, id = layer.id] { return load(id); }));
+    else if (known->second.type != layer.type)
+      STRATA_TRY(room_.exclusively<void>([this, layer] { return reload(layer); }));
+    else if (known->second.version != layer.version || computed(known->second) != computed(layer))
+      run_on(room_.strand_, [&] { return replace(layer); });
+  }
+  return {};
+}
+
+Result<void> OpenRoom::LayersPart::reload(const Layer& stored) {
+  auto state = STRATA_TRY(read_layer_state(room_.services_.store, stored));
+  auto handles = add_layer(room_.services_.renderer, room_.model_handle(), state);
+  if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
+  state.handles = *handles;
+  state.layer.sequence = state.mirror->sequence();
+  run_on(room_.strand_, [&] {
+    LayerHandles old;
+    {
+      std::lock_guard lock(room_.mutex_);
+      const auto found = room_.layers_.find(stored.id);
+      if (found == room_.layers_.end()) return;
+      old = found->second.handles;
+      found->second = state;
+      room_.mirrors_share_.recount(room_.mirror_bytes());
+    }
+    replace(state.layer);
+    remove_layer(room_.services_.renderer, old);
+  });
+  return {};
+}
+
 Result<void> OpenRoom::LayersPart::load(LayerId id) {
   auto layer =
       STRATA_TRY(room_.services_.store.layers().find(room_.model_id_, to_string(id), Role::owner));

@@ -31,6 +31,11 @@ class OpenRoom::LayersPart final : public Layers {
   Result<void> check_expression(const Expression& expression, const std::string& field,
                                 Visibility layer) const override;
 
+  // For a room that follows another node (room/open/following.h): loads and unloads layers until
+  // the room has the stored ones, with their properties and types. The content of other layers
+  // stays. Blocks.
+  Result<void> take(const std::vector<Layer>& stored);
+
   // Marks computed layers that match `reads` as stale, and notifies listeners. Runs on the strand.
   void outdate(const std::function<bool(const LayerFormula&)>& reads);
   // Replaces the layer of the room by the stored one, and notifies listeners. Runs on the strand.
@@ -40,6 +45,8 @@ class OpenRoom::LayersPart final : public Layers {
   Result<void> unload(LayerId id, const std::function<Result<void>()>& in_store);
   // Loads a restored layer. Must run within `exclusively`.
   Result<void> load(LayerId id);
+  // Loads a layer whose type has changed. Must run within `exclusively`.
+  Result<void> reload(const Layer& stored);
 
   OpenRoom& room_;
 };

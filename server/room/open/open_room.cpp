@@ -4,7 +4,9 @@
 #include <boost/asio/post.hpp>
 
 #include "core/log.h"
+#include "core/no_such.h"
 #include "core/text/slug.h"
+#include "room/open/following.h"
 #include "room/open/open_edits.h"
 #include "room/open/open_layers.h"
 #include "room/open/open_participants.h"
@@ -21,6 +23,19 @@
 #include "store/store.h"
 
 namespace strata::room {
+namespace {
+
+// The epochs of claims are higher, so the journal refuses every entry with this one.
+constexpr std::int64_t kNoClaim = 0;
+
+Result<store::ModelState> state_of(store::Store& store, ModelId id) {
+  const auto states = STRATA_TRY(store.journal().model_states({&id, 1}));
+  const auto found = states.find(id);
+  if (found == states.end()) return no_such("model", to_string(id));
+  return found->second;
+}
+
+}  // namespace
 
 OpenRoom::OpenRoom(const RoomServices& services, Model model, std::int64_t epoch,
                    render::ModelGeometry geometry)
@@ -61,8 +76,20 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomServices& services,
   return room;
 }
 
+Result<std::shared_ptr<OpenRoom>> OpenRoom::follow(const RoomServices& services,
+                                                   const std::string& model_ref) {
+  auto model = STRATA_TRY(services.store.models().find(model_ref));
+  // Read before the content, so the first comparison finds all later changes.
+  auto state = STRATA_TRY(state_of(services.store, model.id));
+  state.version = model.version;
+  auto room = STRATA_TRY(load(services, std::move(model), std::nullopt));
+  room->following_part_ = std::make_unique<FollowingPart>(*room, state);
+  return room;
+}
+
 Result<std::shared_ptr<OpenRoom>> OpenRoom::load(const RoomServices& services, Model model,
-                                                 std::int64_t epoch) {
+                                                 std::optional<std::int64_t> claimed) {
+  const std::int64_t epoch = claimed.value_or(kNoClaim);
   auto geometry = STRATA_TRY(read_geometry(services.store, model.id));
   std::uint64_t bytes = geometry.full->bytes();
   for (const auto& level : geometry.coarser) bytes += level->bytes();
@@ -71,7 +98,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::load(const RoomServices& services, M
   room->geometry_share_ = std::move(share);
   auto journal = read_journal(services.store, room->model_id_, {});
   if (!journal) return tl::unexpected(journal.error());
-  if (journal->epoch != epoch) return tl::unexpected(moved_to({}));
+  if (claimed && journal->epoch != epoch) return tl::unexpected(moved_to({}));
   auto images = STRATA_TRY(services.store.surface_images().of_model(room->model_id_));
   room->contact_shadow_ = room->make_contact_shadow(room->model_.up);
   for (LayerState& state : journal->layers) {
@@ -212,10 +239,14 @@ std::shared_ptr<const mesh::ContactShadow> OpenRoom::contact_shadow(const Light&
 
 Result<Model> OpenRoom::update_model(Model model, const store::IdempotentResponse<Model>& answer) {
   auto updated = STRATA_TRY(services_.store.models().update(std::move(model), answer));
+  show_model(updated);
+  return updated;
+}
+
+void OpenRoom::show_model(const Model& updated) {
   const bool is_turned = updated.up != this->model().up;
   auto shadow = is_turned ? make_contact_shadow(updated.up) : nullptr;
   run_on(strand_, [&] { replace_model(updated, std::move(shadow)); });
-  return updated;
 }
 
 void OpenRoom::replace_model(const Model& stored,
@@ -273,10 +304,14 @@ void OpenRoom::edit_applied(const Listener::Edit& edit) {
 
 void OpenRoom::edit_saved(const Listener::Edit& edit) {
   durable_ = edit.sequence;
+  outdate_readers(edit.layer_id, edit.sequence);
+}
+
+void OpenRoom::outdate_readers(LayerId layer_id, std::int64_t sequence) {
   layers_part_->outdate([&](const LayerFormula& formula) {
-    return formula.computed_sequence < edit.sequence &&
+    return formula.computed_sequence < sequence &&
            std::ranges::any_of(formula.inputs,
-                               [&](const auto& input) { return input.layer == edit.layer_id; });
+                               [&](const auto& input) { return input.layer == layer_id; });
   });
 }
 
@@ -310,11 +345,12 @@ void OpenRoom::stop_saving(const Error& why) {
     // Notifies listeners first, so clients keep refused edits until the database answers.
     if (is_current_.exchange(false))
       participants_part_->tell([](Listener& l) { l.database_reachable(false); });
-    pipeline_->stop_saving(why);
+    if (!following_part_) pipeline_->stop_saving(why);
   });
 }
 
 void OpenRoom::continue_saving() {
+  if (following_part_) return following_part_->resume();
   run_on(strand_, [&] {
     if (moved_) return;
     recovery_.metadata_outdated = !is_current_;
@@ -356,7 +392,7 @@ void OpenRoom::deposed(const Error& reason) {
 }
 
 Result<void> OpenRoom::check_not_deposed() {
-  if (!services_.options.node) return {};
+  if (!services_.options.node || following_part_) return {};
   // Ignores errors of this query. If the work also needs the database, the work reports them.
   const auto state = services_.store.journal().state(model_id_, {});
   if (!state || state->epoch == epoch_) return {};
@@ -366,7 +402,7 @@ Result<void> OpenRoom::check_not_deposed() {
 }
 
 void OpenRoom::release() {
-  if (!services_.options.node) return;
+  if (!services_.options.node || following_part_) return;
   if (auto released = services_.store.nodes().release(model_id_, epoch_); !released)
     log::warning("model " + to_string(model_id_) +
                  " could not be released: " + released.error().detail);

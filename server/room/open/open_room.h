@@ -67,6 +67,10 @@ class OpenRoom final : public Room,
   // node has the model.
   static Result<std::shared_ptr<OpenRoom>> open(const RoomServices& services,
                                                 const std::string& model_ref);
+  // Loads a model that another node has, to show it only. The room follows the journal
+  // (room/open/following.h). Blocks.
+  static Result<std::shared_ptr<OpenRoom>> follow(const RoomServices& services,
+                                                  const std::string& model_ref);
   OpenRoom(const RoomServices& services, Model model, std::int64_t epoch,
            render::ModelGeometry geometry);
   ~OpenRoom() override;
@@ -140,6 +144,8 @@ class OpenRoom final : public Room,
   void release();
   ModelId id() const { return model_id_; }
   std::int64_t epoch() const { return epoch_; }  // epoch of the claim (store/nodes/nodes.h)
+  class FollowingPart;
+  FollowingPart* following() { return following_part_.get(); }  // null: the room has a claim
 
  private:
   class LayersPart;
@@ -149,14 +155,18 @@ class OpenRoom final : public Room,
   class PicturesPart;
   class SurfaceImagesPart;
 
+  // `epoch` is that of the claim. Nothing: the room follows another node.
   static Result<std::shared_ptr<OpenRoom>> load(const RoomServices& services, Model model,
-                                                std::int64_t epoch);
+                                                std::optional<std::int64_t> epoch);
   // Runs `work` on a worker when every earlier edit is durable. No edit and no recovery starts
   // while it runs. Blocks. Returns `moved` if another node has claimed the model.
   template <class T>
   Result<T> exclusively(std::function<Result<T>()> work);
   Result<void> check_not_deposed();
-  void tell_moved(const Error& why);  // on the strand
+  void tell_moved(const Error& why);    // on the strand
+  void show_model(const Model& model);  // replaces the properties, and notifies listeners; blocks
+  // Marks the layers as stale that are computed from this layer. Runs on the strand.
+  void outdate_readers(LayerId layer_id, std::int64_t sequence);
   // Defined in recovery.cpp.
   void recover();
   void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
@@ -240,6 +250,7 @@ class OpenRoom final : public Room,
   const std::unique_ptr<PicturesPart> pictures_part_;
   const std::unique_ptr<SurfaceImagesPart> surface_images_part_;
   const std::unique_ptr<ParticipantsPart> participants_part_;
+  std::unique_ptr<FollowingPart> following_part_;  // set before the room is shared
 };
 
 template <class T>

@@ -45,15 +45,18 @@ bool reads_layers(const EditRequest& request) {
   return fill && std::holds_alternative<FillEdit::Where>(fill->region);
 }
 
+TileAddress address_of(const TileChange& change) { return change.address; }
+TileAddress address_of(TileAddress tile) { return tile; }
+
 // Returns the bounding box of the surface in the changed tiles.
-std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& changes,
-                                                const mesh::SurfaceMap& map) {
+template <class Tiles>
+std::optional<render::FrameRequest::Box> box_of(const Tiles& changes, const mesh::SurfaceMap& map) {
   render::FrameRequest::Box box{glm::vec3(std::numeric_limits<float>::max()),
                                 glm::vec3(std::numeric_limits<float>::lowest())};
   const int tiles_per_side = map.resolution / kTileSize;
-  for (const TileChange& change : changes) {
-    const auto& bounds =
-        map.bounds_of_tile[std::size_t(change.address.y) * tiles_per_side + change.address.x];
+  for (const auto& change : changes) {
+    const TileAddress tile = address_of(change);
+    const auto& bounds = map.bounds_of_tile[std::size_t(tile.y) * tiles_per_side + tile.x];
     if (bounds.radius < 0) continue;
     box.min = glm::min(box.min, bounds.center - bounds.radius);
     box.max = glm::max(box.max, bounds.center + bounds.radius);
@@ -667,9 +670,12 @@ void EditPipeline::repaired(const std::optional<Error>& failure) {
   busy_ = false;
   if (closed_) return;
   if (!failure) {
-    for (const auto& [layer_id, tiles] : std::exchange(stale_, {}))
-      if (const LayerState* layer = host_->find_layer(layer_id))
-        host_->content_changed(*layer, std::nullopt, sequence_);
+    for (const auto& [layer_id, tiles] : std::exchange(stale_, {})) {
+      const LayerState* layer = host_->find_layer(layer_id);
+      if (!layer) continue;
+      const auto map = parts_.maps->get(layer->layer.resolution);
+      host_->content_changed(*layer, map ? box_of(tiles, *map) : std::nullopt, sequence_);
+    }
     return;
   }
   if (paused_) return;  // the context was lost, so everything is uploaded again
@@ -681,6 +687,24 @@ void EditPipeline::repaired(const std::optional<Error>& failure) {
     self->repair_waits_ = false;
     if (!cancelled) self->step();
   });
+}
+
+bool EditPipeline::take_news(std::int64_t last_sequence, const std::vector<LayerNews>& news) {
+  if (closed_ || paused_ || busy_ || !stale_.empty()) return false;
+  sequence_ = durable_ = last_sequence;
+  for (const auto& [layer_id, sequence, tiles, provisional] : news) {
+    LayerState* layer = host_->find_layer(layer_id);
+    if (!layer) continue;
+    const bool was_empty = layer->provisional->empty();
+    layer->mirror->put(tiles, sequence);
+    layer->provisional->put(provisional, sequence);
+    host_->set_sequence(*layer, sequence);
+    if (layer->provisional->empty() != was_empty) host_->styles_changed();
+    for (const TileMap* changed : {&tiles, &provisional})
+      for (const auto& [address, tile] : *changed) stale_[layer_id].insert(address);
+  }
+  step();
+  return true;
 }
 
 void EditPipeline::refuse(Waiting& item, const Error& why) {

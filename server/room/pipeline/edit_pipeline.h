@@ -123,6 +123,16 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void gpu_lacks(LayerId layer_id, const std::vector<TileAddress>& tiles);
   void resume();
 
+  // For a room that follows another node (room/open/following.h), instead of all calls that edit.
+  // Puts content that is in the journal into the mirrors, and uploads it. A null tile is empty.
+  // Returns false, and changes nothing, while earlier content is uploaded or the room is paused.
+  struct LayerNews {
+    LayerId layer_id = 0;
+    std::int64_t sequence = 0;  // of the last edit of the layer
+    TileMap tiles, provisional;
+  };
+  bool take_news(std::int64_t last_sequence, const std::vector<LayerNews>& news);
+
   // Refuses waiting, pending and later edits with `why`, until `continue_saving`. A pending edit
   // may be in the journal nevertheless. Its author sends it again and then gets its first answer.
   void stop_saving(const Error& why);

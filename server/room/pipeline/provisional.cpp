@@ -11,15 +11,21 @@ Result<TileMap> read_provisional(store::Store& store, const Layer& layer) {
   if (waiting.edits.empty()) return TileMap{};
   std::vector<std::int64_t> sequences;
   for (const auto& edit : waiting.edits) sequences.push_back(edit.sequence);
-  const auto written = STRATA_TRY(store.journal().written_by(layer, sequences));
+  return read_provisional(store, layer, sequences, {});
+}
+
+Result<TileMap> read_provisional(store::Store& store, const Layer& layer,
+                                 std::span<const std::int64_t> edits, const TileMap& before) {
+  const auto written = STRATA_TRY(store.journal().written_by(layer, edits));
   TileMap tiles;
   for (const auto& [tile, texels] : written) {
     // The values of the texels do not affect the result.
     const auto resolver = STRATA_TRY(
         resolve_tile(TileData(layer.type), texels, layer, tile, store, [](PastRevision&) {}));
-    if (resolver.provisional().any())
-      tiles[tile] =
-          with_provisional(nullptr, {tile, nullptr, nullptr, texels, resolver.provisional()});
+    const auto known = before.find(tile);
+    if (known != before.end() || resolver.provisional().any())
+      tiles[tile] = with_provisional(known == before.end() ? nullptr : known->second,
+                                     {tile, nullptr, nullptr, texels, resolver.provisional()});
   }
   return tiles;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "domain/layers/layer.h"
@@ -19,6 +21,10 @@ namespace strata::room {
 
 // Reads these texels from the journal. Blocks.
 Result<TileMap> read_provisional(store::Store& store, const Layer& layer);
+// Reads the tiles that change when these edits have painted. `before` are all such tiles before the
+// edits. Blocks.
+Result<TileMap> read_provisional(store::Store& store, const Layer& layer,
+                                 std::span<const std::int64_t> edits, const TileMap& before);
 
 // Returns the tile after the change. `before` may be null for an empty tile.
 std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const TileData>& before,

@@ -141,7 +141,8 @@ std::vector<TileAddress> differing_tiles(const TileMap& a, const TileMap& b) {
   std::vector<TileAddress> addresses;
   for (const auto& [address, tile] : a) {
     auto other = b.find(address);
-    if (other == b.end() || !(*other->second == *tile)) addresses.push_back(address);
+    if (other != b.end() && (other->second == tile || *other->second == *tile)) continue;
+    addresses.push_back(address);
   }
   for (const auto& [address, tile] : b)
     if (!a.contains(address)) addresses.push_back(address);

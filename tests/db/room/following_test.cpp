@@ -1,0 +1,350 @@
+// Two servers over one database, each as a node of the site. One has a model, and the other one
+// follows its journal to show it. The oracle is the owner: at the same sequence, both rooms have
+// the same layers, texels, marks and pictures.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <future>
+#include <mutex>
+#include <random>
+#include <thread>
+
+#include "room/edit.h"
+#include "room/edits.h"
+#include "room/layers.h"
+#include "room/listener.h"
+#include "room/participants.h"
+#include "room/pictures.h"
+#include "room/queries.h"
+#include "room/rooms.h"
+#include "store/journal/journal_merger.h"
+#include "store/journal/journal_reads.h"
+#include "store/nodes/nodes.h"
+#include "store/pg/pg.h"
+#include "stream/viewer.h"
+#include "support/room_fixture.h"
+#include "support/whole_picture.h"
+
+namespace strata {
+namespace {
+
+using test::RoomTest;
+using Answer = Result<room::EditAnswer>;
+
+constexpr auto kLong = std::chrono::minutes(5);
+
+// A listener that records its events.
+class Recorder : public room::Listener {
+ public:
+  void edit_applied(const Edit& edit) override {
+    add([&] { edits.push_back(edit); });
+  }
+  void edits_unsaved(const std::vector<Edit>&, const Error&) override {}
+  void layer_changed(LayerChange change, const Layer& layer) override {
+    add([&] { layers.emplace_back(change, layer.slug); });
+  }
+  void model_changed(const Model& model) override {
+    add([&] { names.push_back(model.name); });
+  }
+  void surface_image_changed(LayerChange, const SurfaceImage&) override {}
+  void model_deleted() override {
+    add([&] { is_deleted = true; });
+  }
+  void presence_changed() override {}
+  void view_refused(std::uint32_t, const Error&) override {}
+  void moved(const std::string&) override {
+    add([&] { has_moved = true; });
+  }
+  void database_reachable(bool reachable) override {
+    add([&] { database.push_back(reachable); });
+  }
+
+  // Waits until the events are as expected. `is_expected` may read the members.
+  template <class IsExpected>
+  bool wait(IsExpected is_expected) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, kLong, [&] { return is_expected(*this); });
+  }
+
+  std::vector<Edit> edits;
+  std::vector<std::pair<LayerChange, std::string>> layers;
+  std::vector<std::string> names;
+  std::vector<bool> database;
+  std::atomic<bool> is_deleted{false}, has_moved{false};
+
+ private:
+  template <class Add>
+  void add(Add event) {
+    std::lock_guard lock(mutex_);
+    event();
+    changed_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+};
+
+class Following : public RoomTest {
+ protected:
+  void SetUp() override {
+    RoomTest::SetUp();
+    rooms_.reset();
+    join(a_);
+    join(b_);
+    options_.node = a_.id;
+    restart();
+    room::RoomOptions options;
+    options.node = b_.id;
+    other_store_ = test::open_store(dsn_);
+    other_rooms_ = std::make_unique<room::Rooms>(
+        *other_store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()}, options);
+    layer_ = make_layer(ValueType::u8);
+  }
+  void TearDown() override {
+    participant_.reset();
+    follower_.reset();
+    other_rooms_.reset();
+    other_store_.reset();
+    RoomTest::TearDown();
+  }
+
+  void script(const std::string& sql) {
+    auto connection = store::PgConnection::connect(dsn_);
+    ASSERT_TRUE(connection) << connection.error().detail;
+    const auto done = connection->script(sql);
+    ASSERT_TRUE(done) << done.error().detail;
+  }
+  // A lease that the test does not end lasts for the whole test.
+  void join(const store::NewNode& node) {
+    ASSERT_TRUE(store_->nodes().join(node));
+    script("UPDATE nodes SET lease_until = clock_timestamp() + interval '1 hour' WHERE id = '" +
+           to_string(node.id) + "'");
+  }
+  void follow() {
+    auto open = other_rooms_->follow("pot", Role::owner);
+    ASSERT_TRUE(open) << open.error().detail;
+    follower_ = *open;
+    participant_ = follower_->participants().join({"vera", Role::viewer}, {}, &recorder_,
+                                                  [](const stream::FrameMessages&) {});
+  }
+  std::vector<std::uint8_t> picture(room::Room& room) const {
+    return test::whole_picture(room.pictures(), {}, camera({0.3, -1, 0.4}))->rgba;
+  }
+  // Returns the first difference between the rooms, or nothing.
+  std::string difference() {
+    const auto owner = room();
+    if (owner->edits().durable_sequence() != follower_->edits().sequence()) return "sequence";
+    const auto layers = owner->layers().all(), shown = follower_->layers().all();
+    if (layers.size() != shown.size()) return "number of layers";
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      const Layer &one = layers[i], &other = shown[i];
+      if (one.id != other.id || one.type != other.type || one.version != other.version ||
+          one.sequence != other.sequence || one.opacity != other.opacity)
+        return "layer " + one.slug;
+      if (!test::equal(owner->queries().tiles(one.slug, {})->tiles,
+                       follower_->queries().tiles(one.slug, {})->tiles))
+        return "texels of " + one.slug;
+    }
+    // The marks of edits that wait for review are part of the picture.
+    return picture(*owner) == picture(*follower_) ? "" : "picture";
+  }
+  void expect_follower_equals_owner() {
+    const auto deadline = std::chrono::steady_clock::now() + kLong;
+    std::string differs = difference();
+    while (!differs.empty() && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      differs = difference();
+    }
+    EXPECT_EQ(differs, "");
+  }
+  std::optional<Uuid> owner() {
+    const auto node = store_->nodes().owner_of("pot");
+    return node && *node ? std::optional((*node)->id) : std::nullopt;
+  }
+
+  const store::NewNode a_{random_uuid(), "https://site.example/node/a", "1.0", "llvmpipe"},
+      b_{random_uuid(), "https://site.example/node/b", "1.0", "llvmpipe"};
+  std::unique_ptr<store::Store> other_store_;
+  std::unique_ptr<room::Rooms> other_rooms_;
+  Layer layer_;
+  Recorder recorder_;
+  std::shared_ptr<room::Room> follower_;
+  std::unique_ptr<room::Participant> participant_;
+};
+
+TEST_F(Following, a_follower_shows_each_edit_and_claims_nothing) {
+  ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20)));
+  const auto epoch = store_->journal().state(model_.id, {})->epoch;
+  follow();
+  EXPECT_TRUE(other_rooms_->is_followed("pot"));
+  EXPECT_EQ(other_rooms_->followed_models(), 1u);
+  EXPECT_TRUE(other_rooms_->claims().empty());
+  EXPECT_EQ(other_rooms_->elsewhere("pot").value(), a_.url) << "requests still go to the owner";
+  expect_follower_equals_owner();
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(send(stroke(layer_, 6 + i, {{300 + 20.0 * i, 240}}, 20)));
+  ASSERT_TRUE(recorder_.wait([](const Recorder& told) { return told.edits.size() == 3; }));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(recorder_.edits[i].sequence, 2 + i);
+    EXPECT_EQ(recorder_.edits[i].user, "anna");
+    EXPECT_EQ(recorder_.edits[i].layer_id, layer_.id);
+  }
+  expect_follower_equals_owner();
+  EXPECT_LT(other_rooms_->follower_lag(), kLong);
+
+  std::promise<Answer> refused;
+  follower_->edits().submit(stroke(layer_, 9, {{300, 240}}, 20), {},
+                            [&](Answer answer) { refused.set_value(std::move(answer)); });
+  EXPECT_EQ(refused.get_future().get().error().code, ErrorCode::moved);
+  EXPECT_EQ(owner(), a_.id);
+  EXPECT_EQ(store_->journal().state(model_.id, {})->epoch, epoch);
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 4);
+  EXPECT_FALSE(recorder_.has_moved);
+}
+
+TEST_F(Following, any_edits_undos_decisions_and_changes_of_layers_arrive) {
+  layer_.review = true;
+  layer_ = room()->layers().update(layer_).value();
+  const Layer plain = make_layer(ValueType::u8, 2048, "plain");
+  ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20)));
+  follow();
+  std::mt19937 random(11);
+  std::optional<Layer> extra;
+  store::JournalMerger merger(store_->journal());
+  const auto find = [&](const Layer& layer) { return room()->layers().find(to_string(layer.id)); };
+  for (int step = 0; step < 48; ++step) {
+    const std::string user = random() % 2 ? "anna" : "ben";
+    const Layer& layer = random() % 2 ? layer_ : plain;
+    // Some steps find nothing to change, and are refused.
+    switch (random() % 12) {
+      case 0: (void)send(request(layer, room::UndoEdit{}, user)); break;
+      case 1: (void)send(request(layer, room::RedoEdit{}, user)); break;
+      case 2:
+      case 3: {
+        constexpr Decision kDecisions[] = {Decision::accept, Decision::reject, Decision::reopen};
+        auto edit =
+            request(layer_, room::ReviewEdit{kDecisions[random() % 3], {{}, user}, ""}, "cleo");
+        edit.author.role = Role::curator;
+        edit.record = {{"op", "review"}};
+        (void)send(edit);
+        break;
+      }
+      case 4: {
+        auto changed = find(layer).value();
+        changed.opacity = static_cast<double>(random() % 10) / 10;
+        ASSERT_TRUE(room()->layers().update(changed));
+        break;
+      }
+      case 5:
+        if (extra) {
+          ASSERT_TRUE(room()->layers().put_in_trash(extra->id, {}));
+          extra.reset();
+        } else {
+          extra = make_layer(ValueType::u8, 2048, "extra");
+          ASSERT_TRUE(send(stroke(*extra, 3, {{320, 240}}, 30)));
+        }
+        break;
+      case 6:
+        if (extra && extra->type == ValueType::u8)
+          extra = room()->layers().widen(find(*extra).value(), ValueType::u16).value();
+        break;
+      case 7: {
+        const auto done = merger.merge(model_.id, store_->journal().state(model_.id, {})->epoch,
+                                       std::chrono::system_clock::now() + std::chrono::hours(1),
+                                       [] { return true; });
+        ASSERT_TRUE(done) << done.error().detail;
+        break;
+      }
+      default: {
+        auto batch = stroke(layer, 1 + static_cast<double>(random() % 200),
+                            {{260.0 + static_cast<double>(random() % 120), 240}}, 15, user);
+        for (int n = 0; n < 3; ++n) {
+          auto next = batch;
+          next.id = random_uuid();
+          next.record = {{"op", "stroke"}, {"n", n}, {"path", {{260, 240}, {261, 240 + n}}}};
+          std::get<room::StrokeEdit>(next.edit).n = n;
+          ASSERT_TRUE(send(next));
+        }
+      }
+    }
+    if (step % 8 == 7) expect_follower_equals_owner();
+    if (HasFailure()) return;
+  }
+  EXPECT_EQ(owner(), a_.id);
+  EXPECT_FALSE(recorder_.has_moved);
+}
+
+TEST_F(Following, layers_and_properties_of_the_model_arrive) {
+  follow();
+  using Change = room::Listener::LayerChange;
+  const auto told = [&](Change change, const std::string& slug) {
+    return recorder_.wait([&](const Recorder& now) {
+      return std::ranges::find(now.layers, std::pair(change, slug)) != now.layers.end();
+    });
+  };
+  const Layer late = make_layer(ValueType::u16, 2048, "Late");
+  EXPECT_TRUE(told(Change::created, "late"));
+  ASSERT_TRUE(room()->layers().put_in_trash(late.id, {}));
+  EXPECT_TRUE(told(Change::deleted, "late"));
+  layer_.locked = true;
+  ASSERT_TRUE(room()->layers().update(layer_));
+  EXPECT_TRUE(told(Change::changed, layer_.slug));
+  EXPECT_TRUE(follower_->layers().find(layer_.slug)->locked);
+  auto model = room()->model();
+  model.name = "Pot of 1931";
+  ASSERT_TRUE(room()->update_model(model, {}));
+  EXPECT_TRUE(recorder_.wait([](const Recorder& now) { return !now.names.empty(); }));
+  EXPECT_EQ(recorder_.names.back(), "Pot of 1931");
+  expect_follower_equals_owner();
+}
+
+TEST_F(Following, a_follower_continues_with_the_next_owner) {
+  ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20)));
+  follow();
+  rooms_.reset();  // node A opens the model again, with another epoch
+  rooms_ = std::make_unique<room::Rooms>(
+      *store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()}, options_);
+  ASSERT_TRUE(send(stroke(layer_, 6, {{320, 240}}, 20)));
+  expect_follower_equals_owner();
+  EXPECT_FALSE(recorder_.has_moved);
+}
+
+TEST_F(Following, participants_connect_again_when_this_node_becomes_the_owner) {
+  ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20)));
+  follow();
+  rooms_.reset();
+  script("UPDATE nodes SET lease_until = clock_timestamp() - interval '1 second' WHERE id = '" +
+         to_string(a_.id) + "'");
+  EXPECT_FALSE(recorder_.has_moved) << "without an owner, the model is still shown";
+  const auto open = other_rooms_->open("pot", Role::owner);
+  ASSERT_TRUE(open) << open.error().detail;
+  EXPECT_TRUE(recorder_.wait([](const Recorder& told) { return told.has_moved.load(); }));
+  EXPECT_FALSE(other_rooms_->is_followed("pot"));
+  const auto again = other_rooms_->follow("pot", Role::owner);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->get(), open->get()) << "viewers join the room of the owner";
+}
+
+TEST_F(Following, a_deleted_model_is_no_longer_shown) {
+  follow();
+  script("UPDATE all_models SET binned = now(), binned_by = 'anna', binned_bytes = 0");
+  EXPECT_TRUE(recorder_.wait([](const Recorder& told) { return told.is_deleted.load(); }));
+  EXPECT_FALSE(other_rooms_->is_followed("pot"));
+}
+
+TEST_F(Following, a_node_without_a_lease_tells_viewers_and_catches_up_later) {
+  follow();
+  other_rooms_->suspend();
+  EXPECT_TRUE(recorder_.wait([](const Recorder& told) { return told.database.size() == 1; }));
+  EXPECT_EQ(other_rooms_->follow("pot", Role::viewer).error().code, ErrorCode::unavailable);
+  ASSERT_TRUE(send(stroke(layer_, 6, {{320, 240}}, 20)));
+  other_rooms_->resume();
+  EXPECT_TRUE(recorder_.wait([](const Recorder& told) { return told.database.size() == 2; }));
+  EXPECT_THAT(recorder_.database, ::testing::ElementsAre(false, true));
+  expect_follower_equals_owner();
+}
+
+}  // namespace
+}  // namespace strata
