@@ -45,7 +45,7 @@ struct ServeOptions {
   std::string listen = "127.0.0.1:8080", sql_listen, node_url;
   std::vector<std::string> origins;
   std::filesystem::path tls_cert, tls_key, oidc_config;
-  std::string local_accounts = "on";
+  std::string local_accounts = "on", followers = "on";
   int archive_copy_days = 7, archive_copies = 4;
   std::uint64_t gpu_memory = 0, memory = 0;
   int trash_days = net::ServerOptions{}.trash_days;
@@ -325,6 +325,7 @@ int run(ServeOptions options) {
   room::RoomOptions room_options;
   room_options.memory_bytes = options.memory;
   if (node) room_options.node = node->id;
+  room_options.follows = options.followers == "on";
   room_options.slow_after = std::chrono::milliseconds(options.slow_after_ms);
   room::Rooms rooms(store, **renderer, {renderer->get(), &encoder, options.samples_at_rest},
                     room_options);
@@ -421,6 +422,13 @@ Command add_serve(CLI::App& app) {
       ->envname("STRATA_NODE_URL")
       ->needs(command->get_option("--database"))  // the nodes of a site share a database
       ->check([](const std::string& text) { return usage_of(store::check_node_url, text); });
+  command
+      ->add_option("--followers", options->followers,
+                   "on: this node shows models of other nodes to viewers and kiosks; off: it sends "
+                   "them to these nodes. Only with --node-url")
+      ->envname("STRATA_FOLLOWERS")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
   command
       ->add_option("--origin", options->origins,
                    "Allow connections from this web origin (repeat for several)")

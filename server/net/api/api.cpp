@@ -446,9 +446,8 @@ Result<Api::LiveEntry> Api::admit_live(Request& request) {
   STRATA_TRY(check_host(request, own_names_));
   STRATA_TRY(identify(request, live_));
   STRATA_TRY(check_upgrade_origin(request, options_.allowed_origins));
-  if (auto owner = STRATA_TRY(rooms_.elsewhere(request.segments[3])))
-    return tl::unexpected(moved_to(std::move(*owner)));
-  auto room = rooms_.open(request.segments[3], request.role());
+  bool is_follower = false;
+  auto room = enter_room(request, is_follower);
   if (!room) return tl::unexpected(room.error());
   auto project = STRATA_TRY(store_.projects().find(to_string((*room)->model().project_id)));
   // Finds the name and color that other users see. If the account is deleted, the server closes the
@@ -464,7 +463,21 @@ Result<Api::LiveEntry> Api::admit_live(Request& request) {
   }
   return LiveEntry{std::move(*room),   project.slug,
                    *request.principal, person ? portrait_of(*person) : room::Portrait(),
-                   std::move(view),    Authenticator::secret_of(request)};
+                   std::move(view),    Authenticator::secret_of(request),
+                   is_follower};
+}
+
+Result<std::shared_ptr<room::Room>> Api::enter_room(const Request& request, bool& is_follower) {
+  const std::string& model = request.segments[3];
+  const bool may_follow = rooms_.may_follow() && request.role() < Role::annotator;
+  // If a follower is open, the caller joins it, even if the model has no owner at present.
+  is_follower = may_follow && rooms_.is_followed(model);
+  if (!is_follower) {
+    auto owner = STRATA_TRY(rooms_.elsewhere(model));
+    if (owner && !may_follow) return tl::unexpected(moved_to(std::move(*owner)));
+    is_follower = owner.has_value();
+  }
+  return is_follower ? rooms_.follow(model, request.role()) : rooms_.open(model, request.role());
 }
 
 bool Api::is_still_welcome(const std::string& secret, ProjectId project_id, Role role) {
@@ -472,7 +485,7 @@ bool Api::is_still_welcome(const std::string& secret, ProjectId project_id, Role
 }
 
 std::shared_ptr<LiveSession> Api::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
-  if (entry.project_slug == jobs::kDemoProject && !entry.principal.kiosk)
+  if (entry.project_slug == jobs::kDemoProject && !entry.principal.kiosk && !entry.is_follower)
     demo_annotators_.visited(entry.room->model());
   auto session = std::make_shared<LiveSession>(
       shared_, std::move(entry.room), std::move(entry.project_slug), std::move(entry.principal),

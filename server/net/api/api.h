@@ -75,6 +75,7 @@ class Api {
     room::Portrait portrait;
     std::optional<protocol::PersonalView> personal_view;  // empty for a kiosk
     std::string secret;                                   // as the client sent it
+    bool is_follower = false;                             // another node has the model
   };
   Result<LiveEntry> admit_live(Request& request);
   std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);
@@ -88,6 +89,9 @@ class Api {
  private:
   std::unique_ptr<app::NodeListener> listen_to_nodes();
   void answer_read(const Request& request, const Route& route, const Respond& respond);
+  // Opens the room of a live connection, or one that follows the owner, for a caller who can only
+  // look. Returns `moved` if another node has the model and the caller can edit.
+  Result<std::shared_ptr<room::Room>> enter_room(const Request& request, bool& is_follower);
   static void answer_failures(const Request& request, const Respond& answer,
                               const std::function<void()>& work);
   // Authenticates the caller and checks the role that the route requires. Returns `unavailable` for

@@ -163,6 +163,11 @@ void write_node(MetricsWriter& out, const Metrics& metrics, const Gauges& gauges
   out.counter("strata_models_moved_total",
               "Open models that this node gave to other nodes or lost to them.",
               gauges.node->models_moved);
+  out.gauge("strata_followed_models", "Models of other nodes that this node shows to viewers.",
+            gauges.node->followed_models);
+  out.gauge("strata_follower_lag_seconds",
+            "Time since all models of other nodes were up to date. 0: there are none.",
+            gauges.node->follower_lag_s);
   out.counter("strata_node_messages_received_total",
               "Messages about changes at other nodes that this node received.",
               metrics.node_messages.load());

@@ -39,6 +39,8 @@ struct Metrics {
 struct NodeGauges {
   double lease_s = 0;  // seconds until the lease ends
   std::uint64_t models_moved = 0;
+  std::size_t followed_models = 0;  // open models of other nodes
+  double follower_lag_s = 0;        // seconds since all of them were up to date
 };
 
 // Values of a server with an archive (store/cluster/archive_keeper.h). Times are in seconds since

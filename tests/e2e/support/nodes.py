@@ -26,6 +26,8 @@ FAULT_WORDS = [
     "could not be renewed",
     "could not join the site again",
     "messages of other nodes",
+    "models of other nodes cannot be followed",
+    "of another node is not up to date",
     "changes at other nodes may be missing",
     "may have lost them to other nodes",
     "has claimed model",

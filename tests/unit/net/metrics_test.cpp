@@ -21,7 +21,7 @@ struct Values {
   Metrics metrics;
   room::EditTimings edits;
   Histogram frames, commits;
-  std::optional<NodeGauges> node = NodeGauges{2.5, 3};
+  std::optional<NodeGauges> node = NodeGauges{2.5, 3, 2, 0.25};
   std::optional<ArchiveGauges> archive = ArchiveGauges{1'900'000'000.5, 1'900'000'000, 4, 1};
   std::optional<FileGauges> files = FileGauges{1, 2, 3};
 
@@ -124,6 +124,8 @@ TEST(Metrics, only_a_node_has_a_lease_and_messages_of_other_nodes) {
   values.metrics.node_message_ages.add(20ms);
   EXPECT_TRUE(has_line(values.text(), "strata_node_lease_seconds 2.5"));
   EXPECT_TRUE(has_line(values.text(), "strata_models_moved_total 3"));
+  EXPECT_TRUE(has_line(values.text(), "strata_followed_models 2"));
+  EXPECT_TRUE(has_line(values.text(), "strata_follower_lag_seconds 0.25"));
   EXPECT_TRUE(has_line(values.text(), "strata_node_messages_received_total 7"));
   EXPECT_TRUE(has_line(values.text(), "strata_node_messages_missed_total 1"));
   EXPECT_TRUE(has_line(values.text(), "strata_node_message_seconds_count 1"));

@@ -47,6 +47,8 @@ std::optional<NodeGauges> node_gauges(const RouteContext& context) {
   return NodeGauges{
       std::chrono::duration<double>(context.options.lease->left()).count(),
       context.rooms.models_moved(),
+      context.rooms.followed_models(),
+      context.rooms.follower_lag().count(),
   };
 }
 
