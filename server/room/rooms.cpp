@@ -257,8 +257,8 @@ struct Rooms::Impl {
                        "because another model needs its memory");
   }
 
-  // Closes rooms that are not used by a request and have no edit in progress. `rooms` or `followers`
-  // holds the only reference to such a room.
+  // Closes rooms that are not used by a request and have no edit in progress. `rooms` or
+  // `followers` holds the only reference to such a room.
   bool close_rooms(const std::function<bool(const OpenRoom&)>& may_close, const char* why) {
     std::vector<std::shared_ptr<OpenRoom>> leaving;
     {

@@ -100,7 +100,7 @@ class Rooms {
   std::size_t open_rooms() const;
   std::size_t followed_models() const;  // the number of open models of other nodes
   // The time since every open model of other nodes showed everything that was in the database. 0 if
-  // there are none.
+  // no such model is open.
   std::chrono::duration<double> follower_lag() const;
   // The models that this server has claimed, with the epochs of their claims (store/nodes/nodes.h).
   struct Claim {

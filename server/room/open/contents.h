@@ -30,7 +30,7 @@ struct JournalContents {
 Result<JournalContents> read_journal(store::Store& store, ModelId model_id,
                                      const std::vector<LayerState>& held);
 
-// What a room keeps of a model besides its geometry and its tiles.
+// What a room keeps of a model in addition to its geometry and its tiles.
 struct ModelMetadata {
   Model model;
   std::vector<Layer> layers;

@@ -20,7 +20,7 @@
 namespace strata::room {
 namespace {
 
-// After more edits at once, participants are only told which layers have changed.
+// After more edits at once, participants only learn which layers have changed.
 constexpr int kMaxEdits = 256;
 
 // Returns whether the edit changes the state of earlier edits.

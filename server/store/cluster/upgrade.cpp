@@ -153,7 +153,7 @@ Result<bool> owns_files(const std::string& dsn) {
   return row.rows() > 0;
 }
 
-// Cancels a rehearsal beside a running server when the disk is nearly full.
+// Cancels a rehearsal next to a running server when the disk is nearly full.
 class SpaceWatch {
  public:
   SpaceWatch(const UpgradePlan& plan, Progress& progress)

@@ -12,10 +12,10 @@ constexpr auto kStateColumns =
 constexpr auto kEditColumns =
     sql("e.sequence, e.id, e.stroke, e.user_name, e.op, e.record, e.answer, ", kStateColumns);
 // Lists do not need the paths of strokes, which can be thousands of points.
-constexpr auto kListColumns =
-    sql("e.sequence, e.id, e.stroke, e.user_name, e.op, CASE WHEN jsonb_typeof(e.record) = 'object' "
-        "THEN e.record - '{path,widths}'::text[] ELSE e.record END, e.answer, ",
-        kStateColumns);
+constexpr auto kListColumns = sql(
+    "e.sequence, e.id, e.stroke, e.user_name, e.op, CASE WHEN jsonb_typeof(e.record) = 'object' "
+    "THEN e.record - '{path,widths}'::text[] ELSE e.record END, e.answer, ",
+    kStateColumns);
 
 // The edits of model $1 with the ids $2. A batch of a merged edit keeps its response.
 constexpr auto kWithIds = sql(

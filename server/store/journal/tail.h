@@ -19,7 +19,7 @@ struct ModelState {
   bool operator==(const ModelState&) const = default;
 };
 
-// What users are told about an edit of another user.
+// What other users learn about an edit.
 struct TailEdit {
   std::int64_t sequence = 0;
   LayerId layer_id = 0;

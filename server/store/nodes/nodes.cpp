@@ -192,8 +192,8 @@ Result<std::int64_t> Nodes::try_claim(ModelId model, const std::optional<Uuid>& 
   return pool_.write_within(kClaimLimits, [&](PgConnection& connection) -> Result<std::int64_t> {
     asked = true;
     // The update below sees the leases at its begin, but may wait for the row of the model. An
-    // owner that continues meanwhile cannot join again until this transaction has ended, so it
-    // compares its room with the journal after the claim.
+    // owner that continues in the meantime cannot join again until this transaction has ended, so
+    // it compares its room with the journal after the claim.
     STRATA_TRY(
         connection.query("SELECT FROM models m JOIN nodes n ON n.id = m.owner_node "
                          "WHERE m.id = $1 AND n.lease_until <= clock_timestamp() FOR SHARE OF n",

@@ -64,9 +64,7 @@ def test_batches_that_are_sent_again_get_their_first_response(painted):
 def test_the_texels_are_those_of_a_replay_at_one_node(site, painted):
     painted.check_states()
     newest = {name: painted.texels(name) for name, *_ in LAYERS}
-    painted.server = wait_for(
-        lambda: site.owner(painted.model["id"]), "a node that owns the model"
-    )
+    painted.server = wait_for(lambda: site.owner(painted.model["id"]), "a node that owns the model")
     painted.compare_with_replay(newest)
 
 

@@ -24,9 +24,7 @@ class MergedModel(PaintedModel):
 
     def batches_of(self, stroke):
         """Returns the saved batches of a stroke by sequence. Call with the lock of the book."""
-        return {
-            at: edit for at, edit in self.book.edits.items() if edit[2].get("stroke") == stroke
-        }
+        return {at: edit for at, edit in self.book.edits.items() if edit[2].get("stroke") == stroke}
 
     def merged_batches(self):
         return int(self.sql("SELECT count(*) FROM edit_batches"))
