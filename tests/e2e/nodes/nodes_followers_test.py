@@ -39,7 +39,7 @@ def vera(nodes):
     return nodes[0].add_person("vera", "viewer")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def stays(site, model, nodes):
     """The model has the same owner and the same claim at the end."""
     epoch = site.epoch(model["id"])
@@ -146,9 +146,10 @@ def test_people_who_can_paint_are_sent_to_the_owner(model, nodes, stays):
 
 def test_a_viewer_who_becomes_an_annotator_is_sent_to_the_owner(model, nodes, stays):
     owner, other = nodes
-    token = owner.add_person("ada", "viewer")
+    token = owner.add_person("ada", "annotator")  # so that the token may annotate later
+    owner.ok("PATCH", "/users/ada", {"role": "viewer"})
     with LiveClient(other, model["id"], token=token) as live:
-        live.hello()
+        assert live.hello()["role"] == "viewer"
         owner.ok("PATCH", "/users/ada", {"role": "annotator"})
         with pytest.raises(Closed) as closed:
             while True:
