@@ -44,6 +44,7 @@ class Baker {
         paint_(mesh, atlas) {}
 
   Result<std::optional<BaseColor>> run() {
+    ignore_black();
     look_at_materials();
     if (textured_) {
       if (const int only = only_texture(); only >= 0) {
@@ -68,6 +69,28 @@ class Baker {
  private:
   const Material& material_of(std::size_t triangle) const { return paint_.material_of(triangle); }
 
+  // Many exporters write black for a color that they do not know. Such a black hides the texture,
+  // or makes the whole surface a black shape on which no form can be seen.
+  void ignore_black() {
+    std::uint64_t textured = 0;
+    for (Material& material : mesh_.materials) {
+      if (material.texture < 0 || !is_black(material.color)) continue;
+      material.color = {1, 1, 1, material.color.a};
+      ++textured;
+    }
+    note(repairs_, "materials whose black color hid their texture", textured);
+    if (std::ranges::all_of(mesh_.vertex_colors, [](auto color) { return !(color & 0xffffffu); })) {
+      note(repairs_, "vertices with black as the only color, which is ignored",
+           mesh_.vertex_colors.size());
+      mesh_.vertex_colors.clear();
+    }
+    std::uint64_t black = 0;
+    while (black < mesh_.triangle_count() && is_black(material_of(black).color)) ++black;
+    if (mesh_.materials.empty() || black < mesh_.triangle_count()) return;
+    for (Material& material : mesh_.materials) material.color = glm::vec4(1);
+    note(repairs_, "triangles with black as the only color, which is ignored", black);
+  }
+
   void look_at_materials() {
     if (mesh_.materials.empty()) return;
     first_color_ = material_of(0).color;
@@ -83,6 +106,9 @@ class Baker {
     all_jpeg_ = all_jpeg_ && textured_;
   }
 
+  static bool is_black(const glm::vec4& color) {
+    return std::max({color.r, color.g, color.b}) < 1 / 255.f;
+  }
   static bool is_white(const glm::vec4& color) { return glm::vec3(color) == glm::vec3(1); }
 
   // Returns the texture with pixels that need no change, or −1. Moved triangles may have no

@@ -33,6 +33,7 @@ struct BaseColor {
 // room. They are also lost if some textures are much denser than others. `repairs` then lists the
 // original and the kept size. The result is empty if the mesh has only one color, which is applied
 // to its vertices. The result is also empty if the mesh has vertex colors that no texture hides.
+// Black is ignored as the color of a textured material, and as the only color of the mesh.
 // Textures that cannot be decoded are noted in `repairs`, and their triangles are treated like
 // triangles without a texture. The bytes of the textures are removed from the mesh.
 //

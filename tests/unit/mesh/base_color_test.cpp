@@ -150,6 +150,46 @@ TEST(BaseColor, white_without_textures_is_nothing) {
   EXPECT_TRUE(squares.mesh.vertex_colors.empty());
 }
 
+TEST(BaseColor, black_as_the_only_color_is_ignored) {
+  Squares materials;
+  materials.mesh.textures.clear();
+  materials.mesh.materials = {Material{.color = {0, 0, 0, 1}}, Material{.color = {0, 0, 0, 1}}};
+  EXPECT_FALSE(materials.bake());
+  EXPECT_TRUE(materials.mesh.vertex_colors.empty());
+  ASSERT_EQ(materials.repairs.size(), 1u);
+  EXPECT_EQ(materials.repairs[0].count, 4u);
+
+  Squares vertices;
+  vertices.mesh.textures.clear();
+  vertices.mesh.materials.clear();
+  vertices.mesh.triangle_materials.clear();
+  vertices.mesh.vertex_colors.assign(6, 0xff000000u);
+  EXPECT_FALSE(vertices.bake());
+  EXPECT_TRUE(vertices.mesh.vertex_colors.empty());
+  ASSERT_EQ(vertices.repairs.size(), 1u);
+  EXPECT_EQ(vertices.repairs[0].count, 6u);
+}
+
+TEST(BaseColor, black_beside_another_color_stays_black) {
+  Squares squares;
+  squares.mesh.textures.clear();
+  squares.mesh.materials = {Material{.color = {0, 0, 0, 1}}, Material{.color = {1, 0, 0, 1}}};
+  const auto picture = decode_picture(squares.bake()->bytes);
+  EXPECT_EQ(color_at(*picture, 0.25, 0.25), glm::ivec3(0));
+  EXPECT_EQ(color_at(*picture, 0.75, 0.75), glm::ivec3(255, 0, 0));
+  EXPECT_TRUE(squares.repairs.empty());
+}
+
+TEST(BaseColor, black_does_not_hide_a_texture) {
+  Squares squares;
+  squares.mesh.materials[0].color = {0, 0, 0, 1};
+  const auto picture = decode_picture(squares.bake()->bytes);
+  EXPECT_EQ(color_at(*picture, 0.25, 0.25), glm::ivec3(200, 0, 0));
+  EXPECT_EQ(color_at(*picture, 0.75, 0.75), glm::ivec3(0, 0, 200));
+  ASSERT_EQ(squares.repairs.size(), 1u);
+  EXPECT_EQ(squares.repairs[0].count, 1u);
+}
+
 TEST(BaseColor, a_texture_that_breaks_off_is_reported_and_left_out) {
   Squares squares;
   squares.mesh.textures[0].bytes.resize(squares.mesh.textures[0].bytes.size() / 2);
