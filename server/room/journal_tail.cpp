@@ -67,6 +67,8 @@ void JournalTail::ask() {
     const auto state = states->find(room->id());
     if (state == states->end()) {
       handlers_.on_deleted(room);
+    } else if (room->following()->end() != OpenRoom::FollowingPart::End::none) {
+      handlers_.on_ended(room);
     } else if (room->following()->begin()) {
       boost::asio::post(readers_, [room, now = state->second, asked] {
         room->following()->catch_up(now, asked);

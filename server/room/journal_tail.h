@@ -27,6 +27,8 @@ class JournalTail {
   struct Handlers {
     std::function<std::vector<std::shared_ptr<OpenRoom>>()> rooms;     // returns those that follow
     std::function<void(const std::shared_ptr<OpenRoom>&)> on_deleted;  // the model does not exist
+    // The room does not follow any longer (OpenRoom::FollowingPart::end).
+    std::function<void(const std::shared_ptr<OpenRoom>&)> on_ended;
   };
   // The handlers are called on the thread of the tail.
   JournalTail(store::Store& store, Handlers handlers);

@@ -17,6 +17,7 @@
 #include "core/text/slug.h"
 #include "room/journal_tail.h"
 #include "room/layers.h"
+#include "room/open/following.h"
 #include "room/open/open_room.h"
 #include "room/role_filtered_room.h"
 #include "store/content/models.h"
@@ -30,6 +31,7 @@ constexpr int kStrandThreads = 2;
 constexpr int kWorkerThreads = 2;
 constexpr int kReaderThreads = 2;
 constexpr auto kSweepEvery = std::chrono::seconds(5);
+constexpr auto kFollowAgainAfter = std::chrono::minutes(1);  // after a model could not be followed
 
 // Returns 60 % of the memory of the machine or of its container.
 std::uint64_t default_budget() {
@@ -60,6 +62,11 @@ const Error kNoLease{ErrorCode::unavailable,
                      "This node has lost its connection to the database, so it cannot open models. "
                      "Try again in a moment.",
                      {}};
+const Error kNotFollowed{ErrorCode::unavailable,
+                         "Model cannot be shown here",
+                         "This node cannot show the newest state of the model. Try again in a "
+                         "minute, or at the node that has the model.",
+                         {}};
 
 }  // namespace
 
@@ -96,7 +103,8 @@ struct Rooms::Impl {
     if (options.node && options.follows)
       tail = std::make_unique<JournalTail>(
           store, JournalTail::Handlers{[this] { return all_in(followers); },
-                                       [this](const auto& room) { drop_deleted_follower(room); }});
+                                       [this](const auto& room) { drop_deleted_follower(room); },
+                                       [this](const auto& room) { drop_ended_follower(room); }});
     sweeper = std::thread([this] { sweep(); });
   }
 
@@ -179,14 +187,38 @@ struct Rooms::Impl {
     room->close(why);
   }
 
+  // Returns false if the room was closed already.
+  bool remove_follower(const std::shared_ptr<OpenRoom>& room) {
+    std::lock_guard lock(mutex);
+    const auto found = followers.find(room->id());
+    if (found == followers.end() || found->second != room) return false;
+    followers.erase(found);
+    return true;
+  }
+
   void drop_deleted_follower(const std::shared_ptr<OpenRoom>& room) {
-    {
+    if (remove_follower(room)) room->close_deleted();
+  }
+
+  // Closes a room that does not follow any longer. Its participants connect again. If it could not
+  // be kept up to date, they are sent to the owner.
+  void drop_ended_follower(const std::shared_ptr<OpenRoom>& room) {
+    if (room->following()->end() == OpenRoom::FollowingPart::End::failed) {
+      log::warning("model " + to_string(room->id()) +
+                   " of another node could not be kept up to date, so its viewers move there");
       std::lock_guard lock(mutex);
-      const auto found = followers.find(room->id());
-      if (found == followers.end() || found->second != room) return;
-      followers.erase(found);
+      failed_followers[room->id()] = std::chrono::steady_clock::now();
     }
-    room->close_deleted();
+    if (!remove_follower(room)) return;
+    room->move_away(moved_to({}));
+    room->close(moved_to({}));
+  }
+
+  // Returns whether the model could not be followed a short time ago. Call while holding `mutex`.
+  bool fails_to_follow(ModelId id) const {
+    const auto failed = failed_followers.find(id);
+    return failed != failed_followers.end() &&
+           std::chrono::steady_clock::now() - failed->second < kFollowAgainAfter;
   }
 
   // Without a lease, the database is probably unreachable, and the claims end with the lease.
@@ -308,6 +340,8 @@ struct Rooms::Impl {
   std::condition_variable changed;
   OpenRooms rooms;      // with a claim
   OpenRooms followers;  // of models that other nodes have
+  // When models could not be followed any longer.
+  std::map<ModelId, std::chrono::steady_clock::time_point> failed_followers;
   std::set<ModelId> opening, deleted_meanwhile;
   std::atomic<int> context_losses{0};
   std::atomic<std::uint64_t> models_moved{0};
@@ -366,6 +400,7 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
       found->touch();
       return current(std::move(found));
     }
+    if (use == Use::follow && fails_to_follow(model.id)) return tl::unexpected(kNotFollowed);
     opening.insert(model.id);
   }
   const auto load = [&] {

@@ -46,6 +46,9 @@ struct RoomOptions {
   std::optional<Uuid> node{};
   // Whether this node shows models of other nodes to viewers (Rooms::follow).
   bool follows = true;
+  // If a model of another node cannot be kept up to date for this time, its viewers are sent to the
+  // owner.
+  std::chrono::seconds stop_following_after{30};
   // Edits that take longer are logged with the times of their stages. 0: no limit.
   std::chrono::milliseconds slow_after{1000};
 };

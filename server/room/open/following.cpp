@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <iterator>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -20,8 +22,10 @@
 namespace strata::room {
 namespace {
 
-// After more edits at once, participants only learn which layers have changed.
+// Participants are notified of at most this number of edits at once. Of older edits, they only learn
+// which layers have changed.
 constexpr int kMaxEdits = 256;
+constexpr auto kLoadPause = std::chrono::seconds(2);  // after a layer could not be loaded
 
 // Returns whether the edit changes the state of earlier edits.
 bool turns_others(const store::TailEdit& edit) {
@@ -57,98 +61,177 @@ Listener::Edit event_of(const store::TailEdit& edit, const Layer& layer) {
 }  // namespace
 
 void OpenRoom::FollowingPart::catch_up(const store::ModelState& now, Clock::time_point asked) {
-  const bool resumes = resumes_.exchange(false);
-  const auto done = now == known_ ? Result<void>{} : read(now);
-  if (!done) {
-    if (resumes) resumes_ = true;
-    // While the room cannot take the news, the pipeline logs the reason if there is one.
-    if (done.error().code != ErrorCode::busy && !fails_.exchange(true))
-      log::warning("model " + to_string(room_.id()) +
-                   " of another node is not up to date: " + done.error().detail);
-  } else {
-    known_ = now;
-    current_at_ = asked;
-    if (fails_.exchange(false))
-      log::info("model " + to_string(room_.id()) + " of another node is up to date again");
-    if (resumes) run_on(room_.strand_, [&] { room_.saving_continued(); });
+  Result<bool> done = true;
+  try {
+    done = read(now);
+  } catch (const std::exception& error) {  // no memory, or no thread to decode tiles
+    done = fail(ErrorCode::out_of_memory, "Out of memory", error.what());
   }
+  if (done && *done)
+    on_current(asked);
+  else if (!stopped_)
+    on_failed(done);
   busy_ = false;
 }
 
-Result<void> OpenRoom::FollowingPart::read(const store::ModelState& now) {
-  store::Store& store = room_.services_.store;
-  if (now.version != known_.version) {
-    const auto model = STRATA_TRY(store.models().find(to_string(room_.id())));
-    if (model.version != room_.model().version) room_.show_model(model);
-  }
-  if (now.images != known_.images) {
-    const auto images = STRATA_TRY(store.surface_images().of_model(room_.id()));
-    run_on(room_.strand_, [&] { room_.surface_images_part_->replace(images); });
-  }
-  // After a new claim, or if the database lost edits, the same sequences may be other edits.
-  const bool starts_over = now.epoch != known_.epoch || now.sequence < known_.sequence;
-  if (!starts_over && now.sequence == known_.sequence && now.layers == known_.layers) return {};
-  return read_layers(now, starts_over);
+void OpenRoom::FollowingPart::on_current(Clock::time_point asked) {
+  current_at_ = asked;
+  fails_since_.reset();
+  if (std::exchange(is_reported_, false))
+    log::info("model " + to_string(room_.id()) + " of another node is up to date again");
+  if (resumes_.exchange(false)) run_on(room_.strand_, [&] { room_.saving_continued(); });
 }
 
-Result<void> OpenRoom::FollowingPart::read_layers(const store::ModelState& now, bool starts_over) {
-  store::Store& store = room_.services_.store;
-  const auto edits =
-      STRATA_TRY(store.journal().last_edits(room_.id(), known_.sequence, now.sequence, kMaxEdits));
-  const auto stored = STRATA_TRY(store.layers().of_model(room_.id(), Role::owner));
-  STRATA_TRY(room_.layers_part_->take(stored));
-  std::vector<EditPipeline::LayerNews> news;
-  std::int64_t last_sequence = now.sequence;
-  for (const Layer& layer : stored) {
-    auto changed = STRATA_TRY(read_layer(layer, edits, starts_over));
-    if (!changed) continue;
-    // The layers may contain edits that are newer than the state.
-    last_sequence = std::max(last_sequence, changed->sequence);
-    news.push_back(std::move(*changed));
+void OpenRoom::FollowingPart::on_failed(const Result<bool>& done) {
+  if (!done && !std::exchange(is_reported_, true))
+    log::warning("model " + to_string(room_.id()) +
+                 " of another node is not up to date: " + done.error().detail);
+  // While the database is unreachable, no other node has a newer state.
+  if (!done && done.error().code == ErrorCode::unavailable) return fails_since_.reset();
+  if (!fails_since_) fails_since_ = Clock::now();
+  if (Clock::now() - *fails_since_ >= room_.services_.options.stop_following_after &&
+      end_ == End::none)
+    end_ = End::failed;
+}
+
+// An error in one step does not stop the others. The properties of layers come first, because they
+// determine who sees a layer. If the database does not answer, the next step would wait as long.
+Result<bool> OpenRoom::FollowingPart::read(const store::ModelState& now) {
+  using Part = FollowingPart;
+  Result<bool> all = true;
+  for (const auto step : {&Part::read_layers, &Part::read_images, &Part::read_model,
+                          &Part::read_content, &Part::load_layers}) {
+    const auto done = (this->*step)(now);
+    if (all && !(done && *done)) all = done;
+    if (stopped_ || end_ != End::none) return false;
+    if (!done && done.error().code == ErrorCode::unavailable) break;
   }
-  if (run_on(room_.strand_, [&] { return take(last_sequence, news, edits); })) return {};
-  return fail(ErrorCode::busy, "Model is busy", "The model is still being uploaded to the GPU.");
+  return all;
+}
+
+Result<bool> OpenRoom::FollowingPart::read_layers(const store::ModelState& now) {
+  if (now.layers == known_.layers) return true;
+  const auto stored =
+      STRATA_TRY(room_.services_.store.layers().of_model(room_.id(), Role::owner));
+  const auto lacking = room_.layers_part_->take(stored);
+  to_load_.insert(lacking.begin(), lacking.end());
+  std::erase_if(to_load_, [&](const LayerId id) {
+    return std::ranges::find(stored, id, &Layer::id) == stored.end();
+  });
+  known_.layers = now.layers;
+  return true;
+}
+
+Result<bool> OpenRoom::FollowingPart::read_images(const store::ModelState& now) {
+  if (now.images == known_.images) return true;
+  const auto images = STRATA_TRY(room_.services_.store.surface_images().of_model(room_.id()));
+  run_on(room_.strand_, [&] { room_.surface_images_part_->replace(images); });
+  known_.images = now.images;
+  return true;
+}
+
+Result<bool> OpenRoom::FollowingPart::read_model(const store::ModelState& now) {
+  if (now.version == known_.version) return true;
+  const auto model = STRATA_TRY(room_.services_.store.models().find(to_string(room_.id())));
+  if (model.version != room_.model().version) room_.show_model(model);
+  known_.version = now.version;
+  return true;
+}
+
+// The commits of each owner follow the last edit of the one before, so a new claim changes nothing.
+// But a database that lost edits can contain others with the same sequences.
+Result<bool> OpenRoom::FollowingPart::has_all_edits(const store::ModelState& now) {
+  if (now.sequence < known_.sequence) return false;
+  if (now.epoch == known_.epoch || now.last_edit == known_.last_edit) return true;
+  const auto last =
+      STRATA_TRY(room_.services_.store.journal().last_edit(room_.id(), known_.sequence));
+  return last == known_.last_edit;
+}
+
+Result<bool> OpenRoom::FollowingPart::read_content(const store::ModelState& now) {
+  const bool has_all = STRATA_TRY(has_all_edits(now));
+  if (!has_all) {
+    log::warning("the database has lost edits of model " + to_string(room_.id()) +
+                 " of another node, so the model is read again");
+    end_ = End::lost_edits;
+    return false;
+  }
+  Result<bool> all = true;
+  if (now.sequence != known_.sequence) {
+    store::Journal& journal = room_.services_.store.journal();
+    const auto edits =
+        STRATA_TRY(journal.last_edits(room_.id(), known_.sequence, now.sequence, kMaxEdits));
+    const auto sequences = STRATA_TRY(journal.layer_sequences(room_.id(), now.sequence));
+    std::vector<EditPipeline::LayerNews> news;
+    for (const LayerState& held : room_.layer_states()) {
+      const auto sequence = sequences.find(held.layer.id);
+      if (stopped_) return false;
+      if (sequence == sequences.end() || to_load_.contains(held.layer.id)) continue;
+      auto changed = read_layer(held, sequence->second, edits);
+      if (changed && *changed) news.push_back(std::move(**changed));
+      if (changed) continue;
+      if (changed.error().code == ErrorCode::unavailable) return tl::unexpected(changed.error());
+      to_load_.insert(held.layer.id);
+      all = tl::unexpected(changed.error());
+    }
+    if (!run_on(room_.strand_, [&] { return take(now.sequence, news, edits); })) return false;
+  }
+  known_.sequence = now.sequence;
+  known_.epoch = now.epoch;
+  known_.last_edit = now.last_edit;
+  return all;
+}
+
+Result<bool> OpenRoom::FollowingPart::load_layers(const store::ModelState&) {
+  if (!to_load_.empty() && Clock::now() < load_at_) return false;
+  Result<bool> all = true;
+  for (auto id = to_load_.begin(); id != to_load_.end();) {
+    if (stopped_) return false;
+    const auto loaded = room_.layers_part_->load(*id);
+    if (!loaded) all = tl::unexpected(loaded.error());
+    id = loaded ? to_load_.erase(id) : std::next(id);
+  }
+  if (!all) load_at_ = Clock::now() + kLoadPause;
+  return all;
 }
 
 Result<std::optional<EditPipeline::LayerNews>> OpenRoom::FollowingPart::read_layer(
-    const Layer& stored, const std::vector<store::TailEdit>& edits, bool starts_over) {
-  const auto held = room_.layer_state(stored.id);
-  if (!held) return std::nullopt;
-  const auto before = held->mirror->snapshot();
-  const bool has_edits = std::ranges::any_of(
-      edits, [&](const store::TailEdit& edit) { return edit.layer_id == stored.id; });
-  if (!starts_over && stored.sequence == before.sequence && !has_edits) return std::nullopt;
+    const LayerState& held, std::int64_t sequence, const std::vector<store::TailEdit>& edits) {
+  const LayerId id = held.layer.id;
+  const auto before = held.mirror->snapshot();
+  const bool is_behind = sequence > before.sequence;
+  const bool has_edits =
+      std::ranges::any_of(edits, [&](const auto& edit) { return edit.layer_id == id; });
+  if (!is_behind && !has_edits) return std::nullopt;
   store::Journal& journal = room_.services_.store.journal();
-  const bool is_behind = !starts_over && stored.sequence >= before.sequence;
-  const auto after = STRATA_TRY(is_behind ? journal.load_tiles_near(stored, stored.sequence, before)
-                                          : journal.load_tiles(stored));
-  auto marks = STRATA_TRY(read_marks(*held, stored, edits, starts_over));
-  return EditPipeline::LayerNews{stored.id, after.sequence,
-                                 changes_between(before.tiles, after.tiles), std::move(marks)};
+  const auto after =
+      is_behind ? STRATA_TRY(journal.load_tiles_near(held.layer, sequence, before)) : before;
+  auto marks = STRATA_TRY(read_marks(held, edits));
+  return EditPipeline::LayerNews{id, after.sequence, changes_between(before.tiles, after.tiles),
+                                 std::move(marks)};
 }
 
 // A decision or an undo can change the marks of any edit, so it makes all marks of the layer be
 // read. Other edits change only the marks of the texels that they wrote.
-Result<TileMap> OpenRoom::FollowingPart::read_marks(const LayerState& held, const Layer& stored,
-                                                    const std::vector<store::TailEdit>& edits,
-                                                    bool starts_over) {
+Result<TileMap> OpenRoom::FollowingPart::read_marks(const LayerState& held,
+                                                    const std::vector<store::TailEdit>& edits) {
   store::Store& store = room_.services_.store;
   const TileMap before = held.provisional->snapshot().tiles;
-  bool reads_all = starts_over || edits.size() == kMaxEdits;
+  bool reads_all = edits.size() == kMaxEdits;
   bool has_pending = !before.empty();
   std::vector<std::int64_t> painted;
   for (const store::TailEdit& edit : edits) {
-    if (edit.layer_id != stored.id) continue;
+    if (edit.layer_id != held.layer.id) continue;
     reads_all = reads_all || turns_others(edit);
     has_pending = has_pending || edit.pending;
     painted.push_back(edit.sequence);
   }
   if (reads_all) {
-    const auto now = STRATA_TRY(read_provisional(store, stored));
+    const auto now = STRATA_TRY(read_provisional(store, held.layer));
     return changes_between(before, now);
   }
   if (!has_pending || painted.empty()) return TileMap{};
-  return read_provisional(store, stored, painted, before);
+  return read_provisional(store, held.layer, painted, before);
 }
 
 bool OpenRoom::FollowingPart::take(std::int64_t last_sequence,

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "room/open/open_room.h"
@@ -31,23 +32,49 @@ class OpenRoom::FollowingPart {
   Clock::time_point current_at() const { return current_at_; }
   // The node has a lease again. Takes effect when the room has caught up.
   void resume() { resumes_ = true; }
+  // Call when the room is closed. A call of `catch_up` in progress ends soon, and logs no error.
+  void stop() { stopped_ = true; }
+
+  // How the following ended. Then the owner of the room must close it.
+  enum class End { none, failed, lost_edits };
+  // `failed`: the room could not be kept up to date for RoomOptions::stop_following_after, although
+  // the database answers. `lost_edits`: the database no longer contains edits that the room shows,
+  // so the room must be read again.
+  End end() const { return end_; }
 
  private:
-  Result<void> read(const store::ModelState& now);
-  Result<void> read_layers(const store::ModelState& now, bool starts_over);
-  // Returns nothing if the content of the layer has not changed.
+  // Each step updates its part of `known_`. Returns false if the room cannot take the news yet.
+  Result<bool> read(const store::ModelState& now);
+  Result<bool> read_layers(const store::ModelState& now);
+  Result<bool> read_images(const store::ModelState& now);
+  Result<bool> read_model(const store::ModelState& now);
+  Result<bool> read_content(const store::ModelState& now);
+  Result<bool> load_layers(const store::ModelState& now);
+  // Returns whether the journal contains all edits that the room has read.
+  Result<bool> has_all_edits(const store::ModelState& now);
+  // Returns nothing if the content of the layer has not changed. `sequence` is that of its last
+  // edit.
   Result<std::optional<EditPipeline::LayerNews>> read_layer(
-      const Layer& stored, const std::vector<store::TailEdit>& edits, bool starts_over);
-  Result<TileMap> read_marks(const LayerState& held, const Layer& stored,
-                             const std::vector<store::TailEdit>& edits, bool starts_over);
+      const LayerState& held, std::int64_t sequence, const std::vector<store::TailEdit>& edits);
+  Result<TileMap> read_marks(const LayerState& held, const std::vector<store::TailEdit>& edits);
   // Runs on the strand. Returns false if the room cannot take the news yet.
   bool take(std::int64_t last_sequence, const std::vector<EditPipeline::LayerNews>& news,
             const std::vector<store::TailEdit>& edits);
+  void on_current(Clock::time_point asked);
+  void on_failed(const Result<bool>& done);
 
   OpenRoom& room_;
-  std::atomic<bool> busy_{false}, resumes_{false}, fails_{false};
+  std::atomic<bool> busy_{false}, resumes_{false}, stopped_{false};
+  std::atomic<End> end_{End::none};
   std::atomic<Clock::time_point> current_at_{Clock::now()};
-  store::ModelState known_;  // used by the one that catches up
+  // The other members are used by the one that catches up.
+  store::ModelState known_;
+  // Layers that must be loaded completely: new ones, those whose type has changed, and those that
+  // could not be read. If that fails, it is repeated at `load_at_`.
+  std::set<LayerId> to_load_;
+  Clock::time_point load_at_{};
+  std::optional<Clock::time_point> fails_since_;  // while the database answers
+  bool is_reported_ = false;                      // the failure is in the log
 };
 
 }  // namespace strata::room

@@ -36,6 +36,13 @@ Result<void> check_layer(const Layer& layer, const Model& model) {
 
 }  // namespace
 
+bool is_newer(const Layer& layer, const Layer& held) {
+  const auto state = [](const Layer& each) {
+    return std::pair(each.version, each.formula ? each.formula->computed_sequence : 0);
+  };
+  return state(layer) > state(held);
+}
+
 std::vector<Layer> OpenRoom::LayersPart::all() const { return room_.layer_list(); }
 
 Result<Layer> OpenRoom::LayersPart::find(const std::string& ref) const {
@@ -103,6 +110,7 @@ Layer OpenRoom::LayersPart::replace(const Layer& stored) {
     if (found->second.layer.version > now.version) return now;  // a later change arrived first
     before = found->second.layer.visibility;
     now.sequence = found->second.layer.sequence;
+    now.type = found->second.layer.type;  // of the content
     found->second.layer = now;
     found->second.palette = std::make_shared<const Palette>(now.palette);
   }
@@ -225,28 +233,30 @@ Result<void> OpenRoom::LayersPart::unload(LayerId id,
   // the layer was deleted.
   return room_.exclusively<void>([this, id, in_store]() -> Result<void> {
     STRATA_TRY(in_store());
-    run_on(room_.strand_, [&] {
-      LayerState gone;
-      {
-        std::lock_guard lock(room_.mutex_);
-        auto found = room_.layers_.find(id);
-        if (found == room_.layers_.end()) return;
-        gone = std::move(found->second);
-        room_.layers_.erase(found);
-        room_.mirrors_share_.recount(room_.mirror_bytes());
-      }
-      remove_layer(room_.services_.renderer, gone.handles);
-      room_.participants_part_->tell_seen(gone.layer, [&](Listener& l) {
-        l.layer_changed(Listener::LayerChange::deleted, gone.layer);
-      });
-      outdate([&](const LayerFormula& formula) {
-        return std::ranges::any_of(formula.inputs,
-                                   [&](const auto& input) { return input.layer == id; });
-      });
-      room_.participants_part_->styles_changed();
-    });
+    run_on(room_.strand_, [&] { drop(id); });
     return {};
   });
+}
+
+void OpenRoom::LayersPart::drop(LayerId id) {
+  LayerState gone;
+  {
+    std::lock_guard lock(room_.mutex_);
+    auto found = room_.layers_.find(id);
+    if (found == room_.layers_.end()) return;
+    gone = std::move(found->second);
+    room_.layers_.erase(found);
+    room_.mirrors_share_.recount(room_.mirror_bytes());
+  }
+  remove_layer(room_.services_.renderer, gone.handles);
+  room_.participants_part_->tell_seen(gone.layer, [&](Listener& l) {
+    l.layer_changed(Listener::LayerChange::deleted, gone.layer);
+  });
+  outdate([&](const LayerFormula& formula) {
+    return std::ranges::any_of(formula.inputs,
+                               [&](const auto& input) { return input.layer == id; });
+  });
+  room_.participants_part_->styles_changed();
 }
 
 Result<store::TrashRestored> OpenRoom::LayersPart::restore(
@@ -267,67 +277,35 @@ Result<store::TrashRestored> OpenRoom::LayersPart::restore(
   return restored;
 }
 
-Result<void> OpenRoom::LayersPart::take(const std::vector<Layer>& stored) {
-  std::map<LayerId, Layer> held;
-  for (Layer& layer : room_.layer_list()) held.emplace(layer.id, std::move(layer));
-  for (const auto& [id, layer] : held)
-    if (std::ranges::find(stored, id, &Layer::id) == stored.end())
-      STRATA_TRY(unload(id, [] { return Result<void>{}; }));
-  const auto computed = [](const Layer& layer) {
-    return layer.formula ? layer.formula->computed_sequence : 0;
-  };
-  for (const Layer& layer : stored) {
-    const auto known = held.find(layer.id);
-    if (known == held.end())
-      STRATA_TRY(room_.exclusively<void>([this, id = layer.id] { return load(id); }));
-    else if (known->second.type != layer.type)
-      STRATA_TRY(room_.exclusively<void>([this, layer] { return reload(layer); }));
-    else if (known->second.version != layer.version || computed(known->second) != computed(layer))
-      run_on(room_.strand_, [&] { return replace(layer); });
-  }
-  return {};
-}
-
-Result<void> OpenRoom::LayersPart::reload(const Layer& stored) {
-  auto state = STRATA_TRY(read_layer_state(room_.services_.store, stored));
-  auto handles = add_layer(room_.services_.renderer, room_.model_handle(), state);
-  if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
-  state.handles = *handles;
-  state.layer.sequence = state.mirror->sequence();
-  run_on(room_.strand_, [&] {
-    LayerHandles old;
-    {
-      std::lock_guard lock(room_.mutex_);
-      const auto found = room_.layers_.find(stored.id);
-      if (found == room_.layers_.end()) return;
-      old = found->second.handles;
-      found->second = state;
-      room_.mirrors_share_.recount(room_.mirror_bytes());
+std::vector<LayerId> OpenRoom::LayersPart::take(const std::vector<Layer>& stored) {
+  return run_on(room_.strand_, [&] {
+    std::vector<LayerId> lacks;
+    for (const Layer& layer : stored) {
+      const LayerState* held = room_.find_layer(layer.id);
+      if (held && is_newer(layer, held->layer)) replace(layer);
+      if (!held || held->layer.type != layer.type) lacks.push_back(layer.id);
     }
-    replace(state.layer);
-    remove_layer(room_.services_.renderer, old);
+    for (const Layer& held : room_.layer_list())
+      if (std::ranges::find(stored, held.id, &Layer::id) == stored.end()) drop(held.id);
+    return lacks;
   });
-  return {};
 }
 
 Result<void> OpenRoom::LayersPart::load(LayerId id) {
   auto layer =
       STRATA_TRY(room_.services_.store.layers().find(room_.model_id_, to_string(id), Role::owner));
   auto state = STRATA_TRY(read_layer_state(room_.services_.store, std::move(layer)));
-  auto handles = add_layer(room_.services_.renderer, room_.model_handle(), state);
+  const render::ModelHandle model = room_.model_handle();
+  auto handles = add_layer(room_.services_.renderer, model, state);
   if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
   state.handles = *handles;
+  state.layer.sequence = state.mirror->sequence();
+  if (!run_on(room_.strand_, [&] { return put(state, model); })) {
+    remove_layer(room_.services_.renderer, *handles);
+    return tl::unexpected(room_.gpu_problem({ErrorCode::not_found, {}, {}}));
+  }
   room_.maps_->request(state.layer.resolution, [](auto) {});
-  run_on(room_.strand_, [&] {
-    {
-      std::lock_guard lock(room_.mutex_);
-      room_.layers_.emplace(id, state);
-      room_.mirrors_share_.recount(room_.mirror_bytes());
-    }
-    room_.participants_part_->tell_layer(std::nullopt, state.layer);
-    room_.participants_part_->styles_changed();
-  });
-  // Layers that are computed from the restored layer may be up to date again.
+  // Layers that are computed from the loaded layer may be up to date again.
   for (const Layer& other : room_.layer_list()) {
     if (!other.formula || std::ranges::none_of(other.formula->inputs, [&](const auto& input) {
           return input.layer == id;
@@ -338,6 +316,26 @@ Result<void> OpenRoom::LayersPart::load(LayerId id) {
       run_on(room_.strand_, [&] { replace(*stored); });
   }
   return {};
+}
+
+bool OpenRoom::LayersPart::put(const LayerState& state, render::ModelHandle model) {
+  if (room_.recovery_.working || room_.model_handle_ != model) return false;
+  std::optional<Visibility> before;
+  LayerHandles old;
+  {
+    std::lock_guard lock(room_.mutex_);
+    const auto [found, is_new] = room_.layers_.try_emplace(state.layer.id);
+    if (!is_new) {
+      before = found->second.layer.visibility;
+      old = found->second.handles;
+    }
+    found->second = state;
+    room_.mirrors_share_.recount(room_.mirror_bytes());
+  }
+  room_.participants_part_->tell_layer(before, state.layer);
+  room_.participants_part_->styles_changed();
+  if (before) remove_layer(room_.services_.renderer, old);
+  return true;
 }
 
 }  // namespace strata::room

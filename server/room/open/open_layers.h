@@ -10,6 +10,10 @@
 
 namespace strata::room {
 
+// Returns whether the stored properties of a layer, or its last computation, are newer than those
+// that a room has. A computation does not change the version.
+bool is_newer(const Layer& stored, const Layer& held);
+
 class OpenRoom::LayersPart final : public Layers {
  public:
   explicit LayersPart(OpenRoom& room) : room_(room) {}
@@ -31,10 +35,15 @@ class OpenRoom::LayersPart final : public Layers {
   Result<void> check_expression(const Expression& expression, const std::string& field,
                                 Visibility layer) const override;
 
-  // For a room that follows another node (room/open/following.h): loads and unloads layers until
-  // the room has the stored ones, with their properties and types. The content of other layers
-  // stays. Blocks.
-  Result<void> take(const std::vector<Layer>& stored);
+  // For a room that follows another node (room/open/following.h): replaces the properties of the
+  // layers by the stored ones, and unloads the layers that are not stored. Keeps the content of the
+  // others. Returns the layers that the caller must load: new layers, and those whose type has
+  // changed. Does not wait for the database or the GPU.
+  std::vector<LayerId> take(const std::vector<Layer>& stored);
+  // Loads a layer from the database, instead of its present content if the room has the layer.
+  // Returns `gpu_lost` if the room has other data on the GPU at the end. In a room with a claim, it
+  // must run within `exclusively`. Blocks.
+  Result<void> load(LayerId id);
 
   // Marks computed layers that match `reads` as stale, and notifies listeners. Runs on the strand.
   void outdate(const std::function<bool(const LayerFormula&)>& reads);
@@ -43,10 +52,10 @@ class OpenRoom::LayersPart final : public Layers {
 
  private:
   Result<void> unload(LayerId id, const std::function<Result<void>()>& in_store);
-  // Loads a restored layer. Must run within `exclusively`.
-  Result<void> load(LayerId id);
-  // Loads a layer whose type has changed. Must run within `exclusively`.
-  Result<void> reload(const Layer& stored);
+  void drop(LayerId id);  // removes the layer from the room; on the strand
+  // Adds or replaces a layer that was uploaded to this model on the GPU. Returns false if the room
+  // has another one, or is about to have one. Runs on the strand.
+  bool put(const LayerState& state, render::ModelHandle model);
 
   OpenRoom& room_;
 };

@@ -327,6 +327,7 @@ void OpenRoom::tell_moved(const Error& why) {
     std::lock_guard lock(mutex_);
     closed_ = why;
   }
+  if (following_part_) following_part_->stop();
   recovery_.closed = true;
   recovery_.timer.cancel();
   pipeline_->close(why);
@@ -445,6 +446,7 @@ void OpenRoom::close(const Error& why) {
     std::lock_guard lock(mutex_);
     closed_ = why;
   }
+  if (following_part_) following_part_->stop();
   maps_->stop();
   surface_image_cache_->stop();
   record_colors_->stop();

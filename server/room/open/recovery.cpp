@@ -152,7 +152,7 @@ void OpenRoom::on_metadata_read(int suspensions_before, const Result<ModelMetada
   }
   recovery_.metadata_outdated = false;
   for (const Layer& layer : metadata->layers)
-    if (layer.version > find_layer(layer.id)->layer.version) layers_part_->replace(layer);
+    if (is_newer(layer, find_layer(layer.id)->layer)) layers_part_->replace(layer);
   surface_images_part_->replace(metadata->images);
   if (metadata->model.version > model_.version) replace_model(metadata->model, std::move(shadow));
   report_current();
@@ -170,7 +170,12 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
   {
     std::lock_guard lock(mutex_);
     model_handle_ = contents->model;
-    for (auto& [id, state] : layers_) state.handles = contents->layers.at(id);
+    for (const auto& [id, handles] : contents->layers) {
+      if (LayerState* layer = find_layer(id))
+        layer->handles = handles;
+      else  // a room without a claim unloads layers at any time
+        remove_layer(services_.renderer, handles);
+    }
   }
   maps_->set_model(contents->model);
   surface_image_cache_->set_model(contents->model);

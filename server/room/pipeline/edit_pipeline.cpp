@@ -645,25 +645,31 @@ bool EditPipeline::repair() {
   busy_ = true;
   auto left = std::make_shared<std::size_t>(4 * stale_.size());
   auto failure = std::make_shared<std::optional<Error>>();
-  const auto write = [&](render::LayerHandle handle, const TileMirror& mirror,
+  const auto write = [&](LayerId id, render::LayerHandle handle, const TileMirror& mirror,
                          const std::set<TileAddress>& tiles, bool empty_ones) {
     std::vector<render::TileUpload> uploads;
     for (const TileAddress address : tiles)
       if (auto tile = mirror.tile(address); !tile == empty_ones)
         uploads.push_back({address, std::move(tile)});
     parts_.renderer.write_tiles(handle, std::move(uploads),
-                                then([this, left, failure](const Result<void>& uploaded) {
-                                  if (!uploaded && !*failure) *failure = uploaded.error();
+                                then([=, this](const Result<void>& uploaded) {
+                                  if (!uploaded && !*failure && has(id, handle))
+                                    *failure = uploaded.error();
                                   if (--*left == 0) repaired(*failure);
                                 }));
   };
   for (const bool empty_ones : {true, false})
     for (const auto& [layer_id, tiles] : stale_) {
       const LayerState* layer = host_->find_layer(layer_id);
-      write(layer->handles.content, *layer->mirror, tiles, empty_ones);
-      write(layer->handles.provisional, *layer->provisional, tiles, empty_ones);
+      write(layer_id, layer->handles.content, *layer->mirror, tiles, empty_ones);
+      write(layer_id, layer->handles.provisional, *layer->provisional, tiles, empty_ones);
     }
   return true;
+}
+
+bool EditPipeline::has(LayerId id, render::LayerHandle handle) const {
+  const LayerState* layer = host_ ? host_->find_layer(id) : nullptr;
+  return layer && (layer->handles.content == handle || layer->handles.provisional == handle);
 }
 
 void EditPipeline::repaired(const std::optional<Error>& failure) {

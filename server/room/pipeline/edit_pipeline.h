@@ -197,6 +197,9 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void on_saved(std::int64_t sequence, const Result<void>& result);
   void roll_back_when_answered();
   bool repair();  // returns false if the GPU is up to date
+  // Returns whether the layer still has this copy on the GPU. A room that follows another node can
+  // unload or replace a layer at any time.
+  bool has(LayerId id, render::LayerHandle handle) const;
   void repaired(const std::optional<Error>& failure);
   void refuse(Waiting& item, const Error& why);
   void report(const Pending& pending, const Error* why);

@@ -76,6 +76,8 @@ class Journal {
   // Returns the states of several models in one query (tail.cpp). Models that were deleted are left
   // out.
   Result<std::map<ModelId, ModelState>> model_states(std::span<const ModelId> models);
+  // Returns ModelState::last_edit of the last edit up to a sequence.
+  Result<std::int64_t> last_edit(ModelId model_id, std::int64_t through);
   // Returns the edits after a sequence and up to another one, oldest first. If there are more than
   // `limit`, returns the newest ones.
   Result<std::vector<TailEdit>> last_edits(ModelId model_id, std::int64_t after,

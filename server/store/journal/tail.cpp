@@ -3,28 +3,50 @@
 
 #include "store/journal/journal_reads.h"
 #include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
+namespace {
+
+// The digest of the last edit of a model, up to a sequence. An edit that is made again with the
+// same id has another time.
+consteval auto last_edit(const auto& model, const auto& sequence) {
+  return sql(
+      "coalesce((SELECT hashtextextended(concat_ws(' ', e.sequence, e.id, extract(epoch FROM e.time)), 0) "
+      "FROM edits e WHERE e.model_id = ",
+      model, " AND e.sequence <= ", sequence, " ORDER BY e.sequence DESC LIMIT 1), 0)");
+}
+
+}  // namespace
 
 Result<std::map<ModelId, ModelState>> Journal::model_states(std::span<const ModelId> models) {
   PgArray ids(oid::kInt8);
   for (const ModelId id : models) ids.add(id);
   return pool_.read([&](PgConnection& connection) -> Result<std::map<ModelId, ModelState>> {
     auto rows = STRATA_TRY(connection.query(
-        "SELECT m.id, m.sequence, m.owner_epoch, m.version, "
+        sql("SELECT m.id, m.sequence, ", last_edit("m.id", "m.sequence"), ", m.owner_epoch, m.version, "
         "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', l.id, l.version, l.computed_sequence), ',' "
         "ORDER BY l.id), ''), 0) FROM layers l WHERE l.model_id = m.id), "
         "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', i.id, i.version), ',' ORDER BY i.id), ''), 0) "
-        "FROM looks i WHERE i.model_id = m.id) FROM models m WHERE m.id = any($1)",
+        "FROM looks i WHERE i.model_id = m.id) FROM models m WHERE m.id = any($1)"),
         Params().array(ids)));
     std::map<ModelId, ModelState> states;
     for (int i = 0; i < rows.rows(); ++i) {
       PgRow row(rows, i);
       const auto id = row.id<ModelId>();
-      states[id] = {row.integer(), row.integer(), row.integer(), row.integer(), row.integer()};
+      states[id] = {row.integer(), row.integer(), row.integer(),
+                    row.integer(), row.integer(), row.integer()};
     }
     return states;
+  });
+}
+
+Result<std::int64_t> Journal::last_edit(ModelId model_id, std::int64_t through) {
+  return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
+    auto row = STRATA_TRY(connection.query(sql("SELECT ", store::last_edit("$1", "$2")),
+                                           Params().id(model_id).integer(through)));
+    return row.integer(0, 0);
   });
 }
 

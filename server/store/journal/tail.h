@@ -8,11 +8,12 @@
 
 namespace strata::store {
 
-// What a copy of a model at another node compares with the database (room/open/open_follower.h).
+// What a copy of a model at another node compares with the database (room/open/following.h).
 struct ModelState {
-  std::int64_t sequence = 0;  // of the last edit
-  std::int64_t epoch = 0;     // of the newest claim (store/nodes/nodes.h)
-  std::int64_t version = 0;   // of the properties of the model
+  std::int64_t sequence = 0;   // of the last edit
+  std::int64_t last_edit = 0;  // digest of the edit with the highest sequence, with its time
+  std::int64_t epoch = 0;      // of the newest claim (store/nodes/nodes.h)
+  std::int64_t version = 0;    // of the properties of the model
   // Digests of the properties of the layers, without their content, and of the surface images.
   std::int64_t layers = 0, images = 0;
 

@@ -98,10 +98,20 @@ class Following : public RoomTest {
     restart();
     room::RoomOptions options;
     options.node = b_.id;
+    options.stop_following_after = kLong;
+    start_other(options);
+    layer_ = make_layer(ValueType::u8);
+  }
+  // Node A opens the model again, with another epoch.
+  void restart_owner() {
+    rooms_ = std::make_unique<room::Rooms>(
+        *store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()}, options_);
+  }
+  void start_other(const room::RoomOptions& options) {
+    other_rooms_.reset();
     other_store_ = test::open_store(dsn_);
     other_rooms_ = std::make_unique<room::Rooms>(
         *other_store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()}, options);
-    layer_ = make_layer(ValueType::u8);
   }
   void TearDown() override {
     participant_.reset();
@@ -159,6 +169,20 @@ class Following : public RoomTest {
       differs = difference();
     }
     EXPECT_EQ(differs, "");
+  }
+  bool told(Recorder& recorder, room::Listener::LayerChange change, const std::string& slug) {
+    return recorder.wait([&](const Recorder& now) {
+      return std::ranges::find(now.layers, std::pair(change, slug)) != now.layers.end();
+    });
+  }
+  // Makes the follower load the layer again, although its texels are damaged in the database. The
+  // owner keeps it.
+  void damage(const Layer& layer) {
+    const std::string id = to_string(layer.id);
+    script("UPDATE all_layers SET binned = now(), binned_by = 'anna', binned_bytes = 0 WHERE id = " + id);
+    ASSERT_TRUE(told(recorder_, room::Listener::LayerChange::deleted, layer.slug));
+    script("UPDATE tile_revisions SET difference = 'damaged', key_tile = NULL WHERE layer_id = " + id +
+           "; UPDATE all_layers SET binned = NULL, binned_by = NULL, binned_bytes = NULL WHERE id = " + id);
   }
   std::optional<Uuid> owner() {
     const auto node = store_->nodes().owner_of("pot");
@@ -280,9 +304,7 @@ TEST_F(Following, layers_and_properties_of_the_model_arrive) {
   follow();
   using Change = room::Listener::LayerChange;
   const auto told = [&](Change change, const std::string& slug) {
-    return recorder_.wait([&](const Recorder& now) {
-      return std::ranges::find(now.layers, std::pair(change, slug)) != now.layers.end();
-    });
+    return Following::told(recorder_, change, slug);
   };
   const Layer late = make_layer(ValueType::u16, 2048, "Late");
   EXPECT_TRUE(told(Change::created, "late"));
@@ -300,12 +322,84 @@ TEST_F(Following, layers_and_properties_of_the_model_arrive) {
   expect_follower_equals_owner();
 }
 
+TEST_F(Following, a_layer_is_hidden_although_another_layer_cannot_be_loaded) {
+  using Change = room::Listener::LayerChange;
+  const Layer broken = make_layer(ValueType::u8, 2048, "broken");
+  ASSERT_TRUE(send(stroke(broken, 5, {{300, 240}}, 20)));
+  Layer secret = make_layer(ValueType::u8, 2048, "secret");
+  follow();
+  damage(broken);
+  secret.visibility = Visibility::curators;
+  ASSERT_TRUE(room()->layers().update(secret));
+  EXPECT_TRUE(told(recorder_, Change::deleted, "secret"));
+  ASSERT_TRUE(room()->layers().put_in_trash(layer_.id, {}));
+  EXPECT_TRUE(told(recorder_, Change::deleted, layer_.slug));
+  const Layer last = make_layer(ValueType::u8, 2048, "last");
+  EXPECT_TRUE(told(recorder_, Change::created, "last"));
+  const auto edit = send(stroke(last, 5, {{300, 240}}, 20));
+  ASSERT_TRUE(edit);
+  EXPECT_TRUE(recorder_.wait([&](const Recorder& now) {
+    return !now.edits.empty() && now.edits.back().sequence == edit->sequence;
+  })) << "the other layers follow the journal";
+  EXPECT_FALSE(recorder_.has_moved);
+}
+
+TEST_F(Following, viewers_are_sent_to_the_owner_if_the_model_cannot_be_followed) {
+  const Layer broken = make_layer(ValueType::u8, 2048, "broken");
+  ASSERT_TRUE(send(stroke(broken, 5, {{300, 240}}, 20)));
+  room::RoomOptions options;
+  options.node = b_.id;
+  options.stop_following_after = std::chrono::seconds(0);
+  start_other(options);
+  follow();
+  EXPECT_FALSE(recorder_.has_moved);
+  damage(broken);
+  EXPECT_TRUE(recorder_.wait([](const Recorder& now) { return now.has_moved.load(); }));
+  EXPECT_FALSE(other_rooms_->is_followed("pot"));
+  EXPECT_FALSE(other_rooms_->follow("pot", Role::viewer)) << "not for a minute";
+  EXPECT_EQ(owner(), a_.id);
+}
+
+TEST_F(Following, a_layer_that_is_widened_and_hidden_at_once_is_deleted_for_viewers) {
+  using Change = room::Listener::LayerChange;
+  follow();
+  script("UPDATE layers SET type = 'u16', visibility = 'private', version = version + 1");
+  EXPECT_TRUE(told(recorder_, Change::deleted, layer_.slug));
+}
+
+TEST_F(Following, a_model_is_read_again_after_the_database_has_lost_edits) {
+  ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20)));
+  ASSERT_TRUE(send(stroke(layer_, 6, {{320, 240}}, 20)));
+  follow();
+  expect_follower_equals_owner();
+  rooms_.reset();
+  script(
+      "BEGIN; DELETE FROM tile_revisions WHERE sequence = 2; DELETE FROM edits WHERE sequence = 2; "
+      "UPDATE layers SET sequence = 1; UPDATE models SET sequence = 1; COMMIT");
+  restart_owner();
+  ASSERT_TRUE(send(stroke(layer_, 7, {{340, 240}}, 20)));
+  EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 2);
+  EXPECT_TRUE(recorder_.wait([](const Recorder& now) { return now.has_moved.load(); }));
+  participant_.reset();
+  follow();
+  expect_follower_equals_owner();
+}
+
+TEST_F(Following, another_edit_with_the_sequence_of_a_lost_one_is_noticed) {
+  ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20)));
+  follow();
+  expect_follower_equals_owner();
+  script(
+      "BEGIN; UPDATE edits SET id = gen_random_uuid(), time = time + interval '1 second'; "
+      "UPDATE models SET owner_epoch = owner_epoch + 1; COMMIT");
+  EXPECT_TRUE(recorder_.wait([](const Recorder& now) { return now.has_moved.load(); }));
+}
+
 TEST_F(Following, a_follower_continues_with_the_next_owner) {
   ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20)));
   follow();
-  rooms_.reset();  // node A opens the model again, with another epoch
-  rooms_ = std::make_unique<room::Rooms>(
-      *store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()}, options_);
+  rooms_.reset();
+  restart_owner();
   ASSERT_TRUE(send(stroke(layer_, 6, {{320, 240}}, 20)));
   expect_follower_equals_owner();
   EXPECT_FALSE(recorder_.has_moved);
