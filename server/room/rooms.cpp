@@ -365,8 +365,13 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref, Role see
 }
 
 Result<std::shared_ptr<Room>> Rooms::follow(const std::string& model_ref, Role seen_by) {
-  auto room = STRATA_TRY(impl_->open(model_ref, Impl::Use::follow));
-  return seen_as(std::move(room), seen_by);
+  auto room = impl_->open(model_ref, Impl::Use::follow);
+  if (room) return seen_as(std::move(*room), seen_by);
+  // The owner has the model open already. Other nodes may have no memory for it either.
+  if (is_server_failure(room.error().code))
+    if (const auto owner = elsewhere(model_ref); owner && *owner)
+      return tl::unexpected(moved_to(**owner));
+  return tl::unexpected(room.error());
 }
 
 bool Rooms::may_follow() const {
@@ -375,7 +380,8 @@ bool Rooms::may_follow() const {
 }
 
 bool Rooms::is_followed(const std::string& model_ref) const {
-  return impl_->find(model_ref, impl_->followers) != nullptr;
+  const auto room = impl_->find(model_ref, impl_->followers);
+  return room && room->is_current();
 }
 
 Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref, Use use) {

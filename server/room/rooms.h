@@ -68,11 +68,13 @@ class Rooms {
   // Like `open`, for a caller who only looks at a model that another node has. The room follows the
   // journal of the model: it shows each edit within half a second, as a rule, and refuses edits
   // with `moved`. If this node claims the model later, listeners are notified (Listener::moved).
-  // Call only if `may_follow`.
+  // Returns `moved`, with the address of the owner, if this node cannot show the model, for example
+  // because it has too little memory. Call only if `may_follow`.
   Result<std::shared_ptr<Room>> follow(const std::string& model_ref, Role seen_by);
   // Returns whether this server shows models of other nodes. False while it drains.
   bool may_follow() const;
-  // Returns whether such a room of the model is open. Does not ask the database.
+  // Returns whether such a room of the model is open, and has been up to date since the node last
+  // lost its lease. Does not ask the database.
   bool is_followed(const std::string& model_ref) const;
   // Calls Layers::records_changed in the open models.
   void records_changed(TableId table_id);

@@ -356,8 +356,23 @@ TEST_F(Following, viewers_are_sent_to_the_owner_if_the_model_cannot_be_followed)
   damage(broken);
   EXPECT_TRUE(recorder_.wait([](const Recorder& now) { return now.has_moved.load(); }));
   EXPECT_FALSE(other_rooms_->is_followed("pot"));
-  EXPECT_FALSE(other_rooms_->follow("pot", Role::viewer)) << "not for a minute";
+  const auto again = other_rooms_->follow("pot", Role::viewer);
+  ASSERT_FALSE(again) << "not for a minute";
+  EXPECT_EQ(again.error().code, ErrorCode::moved);
+  EXPECT_EQ(again.error().location, a_.url);
   EXPECT_EQ(owner(), a_.id);
+}
+
+TEST_F(Following, a_node_with_too_little_memory_sends_viewers_to_the_owner) {
+  room::RoomOptions options;
+  options.node = b_.id;
+  options.memory_bytes = 1000;
+  start_other(options);
+  const auto open = other_rooms_->follow("pot", Role::viewer);
+  ASSERT_FALSE(open);
+  EXPECT_EQ(open.error().code, ErrorCode::moved);
+  EXPECT_EQ(open.error().location, a_.url);
+  EXPECT_EQ(other_rooms_->follow("vase", Role::viewer).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Following, a_layer_that_is_widened_and_hidden_at_once_is_deleted_for_viewers) {
