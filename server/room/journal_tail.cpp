@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <map>
 #include <utility>
 
 #include "core/log.h"
@@ -13,12 +14,15 @@
 namespace strata::room {
 namespace {
 
-constexpr int kTailThreads = 2;
+constexpr int kThreads = 2;  // of each kind
 
 }  // namespace
 
 JournalTail::JournalTail(store::Store& store, Handlers handlers)
-    : store_(store), handlers_(std::move(handlers)), readers_(kTailThreads) {
+    : handlers_(std::move(handlers)),
+      states_(store.journal().states()),
+      quick_(kThreads),
+      slow_(kThreads) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -29,7 +33,9 @@ JournalTail::~JournalTail() {
     changed_.notify_all();
   }
   thread_.join();
-  readers_.join();
+  for (const auto& room : handlers_.rooms()) room->following()->stop();
+  for (auto* threads : {&quick_, &slow_}) threads->stop();
+  for (auto* threads : {&quick_, &slow_}) threads->join();
 }
 
 std::chrono::duration<double> JournalTail::lag() const {
@@ -50,29 +56,36 @@ void JournalTail::run() {
   }
 }
 
+// Holds no room while it waits, so that rooms without participants can be closed.
 void JournalTail::ask() {
-  const auto rooms = handlers_.rooms();
+  std::map<ModelId, std::weak_ptr<OpenRoom>> rooms;
+  for (const auto& room : handlers_.rooms()) rooms.emplace(room->id(), room);
   if (rooms.empty()) return;
   std::vector<ModelId> models;
-  for (const auto& room : rooms) models.push_back(room->id());
+  for (const auto& [id, room] : rooms) models.push_back(id);
+  if (reconnects_.exchange(false)) states_->disconnect();
   const auto asked = OpenRoom::FollowingPart::Clock::now();
-  const auto states = store_.journal().model_states(models);
+  const auto states = states_->read(models);
   if (!states) {
     if (!std::exchange(fails_, true))
       log::warning("the models of other nodes cannot be followed: " + states.error().detail);
     return;
   }
   if (std::exchange(fails_, false)) log::info("the models of other nodes can be followed again");
-  for (const auto& room : rooms) {
-    const auto state = states->find(room->id());
+  for (const auto& [id, weak] : rooms) {
+    const auto room = weak.lock();
+    if (!room) continue;
+    const auto state = states->find(id);
+    OpenRoom::FollowingPart& following = *room->following();
     if (state == states->end()) {
       handlers_.on_deleted(room);
-    } else if (room->following()->end() != OpenRoom::FollowingPart::End::none) {
+    } else if (following.end() != OpenRoom::FollowingPart::End::none) {
       handlers_.on_ended(room);
-    } else if (room->following()->begin()) {
-      boost::asio::post(readers_, [room, now = state->second, asked] {
-        room->following()->catch_up(now, asked);
-      });
+    } else if (following.begin(state->second, asked)) {
+      boost::asio::post(following.is_slow() ? slow_ : quick_,
+                        [weak = weak, now = state->second, asked] {
+                          if (const auto open = weak.lock()) open->following()->catch_up(now, asked);
+                        });
     }
   }
 }

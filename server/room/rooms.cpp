@@ -511,10 +511,9 @@ void Rooms::suspend() {
     impl_->suspended = true;
     impl_->changed.notify_all();
   }
-  const auto rooms = impl_->all_open();
-  for (const auto& room : rooms) room->stop_saving(kNotSaving);
-  if (!rooms.empty())
-    log::warning(std::to_string(rooms.size()) +
+  for (const auto& room : impl_->all_open()) room->stop_saving(kNotSaving);
+  if (const auto claimed = impl_->open_ones().size(); claimed > 0)
+    log::warning(std::to_string(claimed) +
                  " models are read-only, because this node may have lost them to other nodes");
 }
 
@@ -525,6 +524,7 @@ void Rooms::resume() {
     impl_->changed.notify_all();
   }
   impl_->services.store.nodes().drop_connections();
+  if (impl_->tail) impl_->tail->reconnect();
   for (const auto& room : impl_->all_open()) room->continue_saving();
 }
 

@@ -25,6 +25,7 @@ namespace {
 // Participants are notified of at most this number of edits at once. Of older edits, they only learn
 // which layers have changed.
 constexpr int kMaxEdits = 256;
+constexpr auto kSlow = std::chrono::milliseconds(200);
 constexpr auto kLoadPause = std::chrono::seconds(2);  // after a layer could not be loaded
 
 // Returns whether the edit changes the state of earlier edits.
@@ -60,7 +61,16 @@ Listener::Edit event_of(const store::TailEdit& edit, const Layer& layer) {
 
 }  // namespace
 
+bool OpenRoom::FollowingPart::begin(const store::ModelState& now, Clock::time_point asked) {
+  if (busy_.exchange(true)) return false;
+  if (now != known_ || !to_load_.empty() || resumed_at_.load() <= asked) return true;
+  current_at_ = asked;
+  busy_ = false;
+  return false;
+}
+
 void OpenRoom::FollowingPart::catch_up(const store::ModelState& now, Clock::time_point asked) {
+  const auto begun = Clock::now();
   Result<bool> done = true;
   try {
     done = read(now);
@@ -68,18 +78,23 @@ void OpenRoom::FollowingPart::catch_up(const store::ModelState& now, Clock::time
     done = fail(ErrorCode::out_of_memory, "Out of memory", error.what());
   }
   if (done && *done)
-    on_current(asked);
+    show_current(asked);
   else if (!stopped_)
     on_failed(done);
+  is_slow_ = Clock::now() - begun > kSlow;
   busy_ = false;
 }
 
-void OpenRoom::FollowingPart::on_current(Clock::time_point asked) {
+void OpenRoom::FollowingPart::show_current(Clock::time_point asked) {
   current_at_ = asked;
   fails_since_.reset();
   if (std::exchange(is_reported_, false))
     log::info("model " + to_string(room_.id()) + " of another node is up to date again");
-  if (resumes_.exchange(false)) run_on(room_.strand_, [&] { room_.saving_continued(); });
+  run_on(room_.strand_, [&] {
+    if (resumed_at_.load() > asked) return;
+    resumed_at_ = kNotResumed;
+    room_.saving_continued();
+  });
 }
 
 void OpenRoom::FollowingPart::on_failed(const Result<bool>& done) {
@@ -211,18 +226,27 @@ Result<std::optional<EditPipeline::LayerNews>> OpenRoom::FollowingPart::read_lay
                                  std::move(marks)};
 }
 
-// A decision or an undo can change the marks of any edit, so it makes all marks of the layer be
-// read. Other edits change only the marks of the texels that they wrote.
+// An undo changes the marks of the texels that the undone edits wrote, and other edits those of
+// the texels that they wrote. The journal does not contain which edits a redo or a decision has
+// changed, so all marks of the layer are read. They are also read if no texel waits, because then
+// few edits can wait.
 Result<TileMap> OpenRoom::FollowingPart::read_marks(const LayerState& held,
                                                     const std::vector<store::TailEdit>& edits) {
   store::Store& store = room_.services_.store;
   const TileMap before = held.provisional->snapshot().tiles;
   bool reads_all = edits.size() == kMaxEdits;
-  bool has_pending = !before.empty();
+  const bool has_marks = !before.empty();
+  bool has_pending = has_marks;
   std::vector<std::int64_t> painted;
   for (const store::TailEdit& edit : edits) {
     if (edit.layer_id != held.layer.id) continue;
-    reads_all = reads_all || turns_others(edit);
+    if (edit.op == "undo" && has_marks) {
+      const auto undone = STRATA_TRY(
+          store.journal().undone_by(held.layer.id, edit.user, edit.sequence));
+      painted.insert(painted.end(), undone.begin(), undone.end());
+    } else {
+      reads_all = reads_all || turns_others(edit);
+    }
     has_pending = has_pending || edit.pending;
     painted.push_back(edit.sequence);
   }

@@ -23,15 +23,19 @@ class OpenRoom::FollowingPart {
   // `state` was read before the content of the room.
   FollowingPart(OpenRoom& room, const store::ModelState& state) : room_(room), known_(state) {}
 
-  // Returns whether the caller may now call `catch_up`: one call at a time.
-  bool begin() { return !busy_.exchange(true); }
-  // Reads all changes up to this state, or later ones, and notifies the participants. `asked` is
-  // when the state was requested. After an error, the next call reads the rest. Blocks.
+  // Returns whether the caller must now call `catch_up` for this state, which was requested at
+  // `asked`. Returns false if there is nothing to read, or while another call is in progress.
+  bool begin(const store::ModelState& now, Clock::time_point asked);
+  // Reads all changes up to this state, or later ones, and notifies the participants. After an
+  // error, the next call reads the rest. Blocks.
   void catch_up(const store::ModelState& now, Clock::time_point asked);
   // Returns a time at which the room showed everything that was in the database.
   Clock::time_point current_at() const { return current_at_; }
-  // The node has a lease again. Takes effect when the room has caught up.
-  void resume() { resumes_ = true; }
+  bool is_slow() const { return is_slow_; }  // the last call of `catch_up` took long
+  // The node has a lease again. Takes effect when the room has caught up with a state that was
+  // requested later.
+  void resume() { resumed_at_ = Clock::now(); }
+  void suspend() { resumed_at_ = kNotResumed; }  // the node has no lease
   // Call when the room is closed. A call of `catch_up` in progress ends soon, and logs no error.
   void stop() { stopped_ = true; }
 
@@ -60,11 +64,14 @@ class OpenRoom::FollowingPart {
   // Runs on the strand. Returns false if the room cannot take the news yet.
   bool take(std::int64_t last_sequence, const std::vector<EditPipeline::LayerNews>& news,
             const std::vector<store::TailEdit>& edits);
-  void on_current(Clock::time_point asked);
+  void show_current(Clock::time_point asked);
   void on_failed(const Result<bool>& done);
 
   OpenRoom& room_;
-  std::atomic<bool> busy_{false}, resumes_{false}, stopped_{false};
+  static constexpr auto kNotResumed = Clock::time_point::max();
+  std::atomic<bool> busy_{false}, stopped_{false}, is_slow_{false};
+  // From `resume` until the room has caught up.
+  std::atomic<Clock::time_point> resumed_at_{kNotResumed};
   std::atomic<End> end_{End::none};
   std::atomic<Clock::time_point> current_at_{Clock::now()};
   // The other members are used by the one that catches up.

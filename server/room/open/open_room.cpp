@@ -28,13 +28,6 @@ namespace {
 // The epochs of claims are higher, so the journal refuses every entry with this one.
 constexpr std::int64_t kNoClaim = 0;
 
-Result<store::ModelState> state_of(store::Store& store, ModelId id) {
-  const auto states = STRATA_TRY(store.journal().model_states({&id, 1}));
-  const auto found = states.find(id);
-  if (found == states.end()) return no_such("model", to_string(id));
-  return found->second;
-}
-
 }  // namespace
 
 OpenRoom::OpenRoom(const RoomServices& services, Model model, std::int64_t epoch,
@@ -80,7 +73,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::follow(const RoomServices& services,
                                                    const std::string& model_ref) {
   auto model = STRATA_TRY(services.store.models().find(model_ref));
   // Read before the content, so the first comparison finds all later changes.
-  auto state = STRATA_TRY(state_of(services.store, model.id));
+  auto state = STRATA_TRY(services.store.journal().model_state(model.id));
   state.version = model.version;
   auto room = STRATA_TRY(load(services, std::move(model), std::nullopt));
   room->following_part_ = std::make_unique<FollowingPart>(*room, state);
@@ -346,7 +339,10 @@ void OpenRoom::stop_saving(const Error& why) {
     // Notifies listeners first, so clients keep refused edits until the database answers.
     if (is_current_.exchange(false))
       participants_part_->tell([](Listener& l) { l.database_reachable(false); });
-    if (!following_part_) pipeline_->stop_saving(why);
+    if (following_part_)
+      following_part_->suspend();
+    else
+      pipeline_->stop_saving(why);
   });
 }
 

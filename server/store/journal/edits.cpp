@@ -125,6 +125,16 @@ Result<std::vector<std::int64_t>> Journal::redoable(LayerId layer_id, const std:
   });
 }
 
+Result<std::vector<std::int64_t>> Journal::undone_by(LayerId layer_id, const std::string& user,
+                                                     std::int64_t undo) {
+  return pool_.read([&](PgConnection& connection) {
+    return sequences(connection,
+                     "SELECT sequence FROM edits WHERE layer_id = $1 AND user_name = $2 "
+                     "AND NOT in_force AND undone_by = $3 ORDER BY sequence",
+                     Params().id(layer_id).text(user).integer(undo));
+  });
+}
+
 Result<std::int64_t> Journal::sequence_at(ModelId model_id, const std::string& utc) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // Clients get times in milliseconds. The state at the time of an edit must include the edit.

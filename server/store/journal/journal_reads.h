@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -73,9 +74,9 @@ class Journal {
   Result<HistoryPage> history(LayerId layer_id, int limit, int offset,
                               std::optional<std::int64_t> before = {});
   Result<JournalState> state(ModelId model_id, std::span<const Uuid> ids);
-  // Returns the states of several models in one query (tail.cpp). Models that were deleted are left
-  // out.
-  Result<std::map<ModelId, ModelState>> model_states(std::span<const ModelId> models);
+  // Returns what rooms of other nodes compare (tail.cpp).
+  Result<ModelState> model_state(ModelId model_id);
+  std::unique_ptr<ModelStates> states();  // returns a new reader
   // Returns ModelState::last_edit of the last edit up to a sequence.
   Result<std::int64_t> last_edit(ModelId model_id, std::int64_t through);
   // Returns the edits after a sequence and up to another one, oldest first. If there are more than
@@ -90,6 +91,9 @@ class Journal {
                                              bool pending_only = false);
   Result<std::vector<std::int64_t>> redoable(LayerId layer_id, const std::string& user,
                                              bool pending_only = false);
+  // Returns the edits of `user` that this undo has disabled and that no redo has restored.
+  Result<std::vector<std::int64_t>> undone_by(LayerId layer_id, const std::string& user,
+                                              std::int64_t undo);
   // Returns the strokes and other edits of a layer that are in force and wait for review, oldest
   // first (review.cpp). `after` selects only strokes and edits that begin with a higher sequence.
   Result<ReviewQueue> review_queue(LayerId layer_id, const std::optional<std::string>& user,

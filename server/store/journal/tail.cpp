@@ -9,6 +9,11 @@
 namespace strata::store {
 namespace {
 
+using std::chrono::milliseconds;
+
+// Rooms at this node show an old state while the reader waits.
+constexpr PgLimits kStatesLimits{milliseconds(2000), milliseconds(2000), milliseconds(1000)};
+
 // The digest of the last edit of a model, up to a sequence. An edit that is made again with the
 // same id has another time.
 consteval auto last_edit(const auto& model, const auto& sequence) {
@@ -18,28 +23,54 @@ consteval auto last_edit(const auto& model, const auto& sequence) {
       model, " AND e.sequence <= ", sequence, " ORDER BY e.sequence DESC LIMIT 1), 0)");
 }
 
-}  // namespace
+using States = std::map<ModelId, ModelState>;
 
-Result<std::map<ModelId, ModelState>> Journal::model_states(std::span<const ModelId> models) {
+Result<States> read_states(PgConnection& connection, std::span<const ModelId> models) {
   PgArray ids(oid::kInt8);
   for (const ModelId id : models) ids.add(id);
-  return pool_.read([&](PgConnection& connection) -> Result<std::map<ModelId, ModelState>> {
-    auto rows = STRATA_TRY(connection.query(
-        sql("SELECT m.id, m.sequence, ", last_edit("m.id", "m.sequence"), ", m.owner_epoch, m.version, "
-        "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', l.id, l.version, l.computed_sequence), ',' "
-        "ORDER BY l.id), ''), 0) FROM layers l WHERE l.model_id = m.id), "
-        "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', i.id, i.version), ',' ORDER BY i.id), ''), 0) "
-        "FROM looks i WHERE i.model_id = m.id) FROM models m WHERE m.id = any($1)"),
-        Params().array(ids)));
-    std::map<ModelId, ModelState> states;
-    for (int i = 0; i < rows.rows(); ++i) {
-      PgRow row(rows, i);
-      const auto id = row.id<ModelId>();
-      states[id] = {row.integer(), row.integer(), row.integer(),
-                    row.integer(), row.integer(), row.integer()};
-    }
-    return states;
-  });
+  auto rows = STRATA_TRY(connection.query(
+      sql("SELECT m.id, m.sequence, ", last_edit("m.id", "m.sequence"), ", m.owner_epoch, m.version, "
+      "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', l.id, l.version, l.computed_sequence), ',' "
+      "ORDER BY l.id), ''), 0) FROM layers l WHERE l.model_id = m.id), "
+      "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', i.id, i.version), ',' ORDER BY i.id), ''), 0) "
+      "FROM looks i WHERE i.model_id = m.id) FROM models m WHERE m.id = any($1)"),
+      Params().array(ids)));
+  States states;
+  for (int i = 0; i < rows.rows(); ++i) {
+    PgRow row(rows, i);
+    const auto id = row.id<ModelId>();
+    states[id] = {row.integer(), row.integer(), row.integer(),
+                  row.integer(), row.integer(), row.integer()};
+  }
+  return states;
+}
+
+}  // namespace
+
+ModelStates::ModelStates(std::string dsn) : dsn_(std::move(dsn)) {}
+ModelStates::~ModelStates() = default;
+
+Result<States> ModelStates::read(std::span<const ModelId> models) {
+  if (!connection_ || !connection_->alive()) {
+    connection_.reset();
+    auto fresh = STRATA_TRY(PgConnection::connect(dsn_, kStatesLimits));
+    connection_ = std::make_unique<PgConnection>(std::move(fresh));
+  }
+  return read_states(*connection_, models);
+}
+
+void ModelStates::disconnect() { connection_.reset(); }
+
+std::unique_ptr<ModelStates> Journal::states() {
+  return std::make_unique<ModelStates>(pool_.dsn());
+}
+
+Result<ModelState> Journal::model_state(ModelId model_id) {
+  auto states = STRATA_TRY(pool_.read(
+      [&](PgConnection& connection) { return read_states(connection, {&model_id, 1}); }));
+  const auto found = states.find(model_id);
+  if (found == states.end()) return no_such("model", to_string(model_id));
+  return found->second;
 }
 
 Result<std::int64_t> Journal::last_edit(ModelId model_id, std::int64_t through) {

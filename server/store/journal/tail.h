@@ -1,12 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
 #include <string>
 
+#include "core/error.h"
 #include "core/ids.h"
 #include "core/uuid.h"
 
 namespace strata::store {
+
+class PgConnection;
 
 // What a copy of a model at another node compares with the database (room/open/following.h).
 struct ModelState {
@@ -18,6 +24,22 @@ struct ModelState {
   std::int64_t layers = 0, images = 0;
 
   bool operator==(const ModelState&) const = default;
+};
+
+// Reads the states of models several times a second. Uses its own connection with short limits,
+// which it opens again when it breaks, so it waits neither for a busy pool nor long for a database
+// that has vanished. Not thread-safe.
+class ModelStates {
+ public:
+  explicit ModelStates(std::string dsn);
+  ~ModelStates();
+  // Reads all states in one query. Models that were deleted are left out.
+  Result<std::map<ModelId, ModelState>> read(std::span<const ModelId> models);
+  void disconnect();  // the next call opens another connection
+
+ private:
+  const std::string dsn_;
+  std::unique_ptr<PgConnection> connection_;
 };
 
 // What other users learn about an edit.

@@ -216,7 +216,6 @@ TEST_F(Following, a_follower_shows_each_edit_and_claims_nothing) {
     EXPECT_EQ(recorder_.edits[i].layer_id, layer_.id);
   }
   expect_follower_equals_owner();
-  EXPECT_LT(other_rooms_->follower_lag(), kLong);
 
   std::promise<Answer> refused;
   follower_->edits().submit(stroke(layer_, 9, {{300, 240}}, 20), {},
@@ -408,6 +407,26 @@ TEST_F(Following, another_edit_with_the_sequence_of_a_lost_one_is_noticed) {
       "BEGIN; UPDATE edits SET id = gen_random_uuid(), time = time + interval '1 second'; "
       "UPDATE models SET owner_epoch = owner_epoch + 1; COMMIT");
   EXPECT_TRUE(recorder_.wait([](const Recorder& now) { return now.has_moved.load(); }));
+}
+
+TEST_F(Following, the_lag_grows_while_the_database_does_not_answer) {
+  follow();
+  const auto wait_for = [&](const auto& is_expected) {
+    const auto deadline = std::chrono::steady_clock::now() + kLong;
+    while (!is_expected(other_rooms_->follower_lag()) &&
+           std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return is_expected(other_rooms_->follower_lag());
+  };
+  auto blocker = store::PgConnection::connect(dsn_);
+  ASSERT_TRUE(blocker) << blocker.error().detail;
+  ASSERT_TRUE(blocker->script("BEGIN; LOCK TABLE looks"));
+  EXPECT_TRUE(wait_for([](const auto lag) { return lag > std::chrono::seconds(2); }));
+  ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20)));
+  EXPECT_TRUE(recorder_.edits.empty());
+  ASSERT_TRUE(blocker->script("COMMIT"));
+  EXPECT_TRUE(recorder_.wait([](const Recorder& now) { return now.edits.size() == 1; }));
+  EXPECT_TRUE(wait_for([](const auto lag) { return lag < std::chrono::seconds(2); }));
 }
 
 TEST_F(Following, a_follower_continues_with_the_next_owner) {
