@@ -69,6 +69,7 @@ DurableState OpenRoom::EditsPart::durable_state() const {
 
 Result<void> OpenRoom::EditsPart::keep_sums(LayerId layer_id) {
   room_.touch();
+  STRATA_TRY(room_.check_claimed());  // before the map is made
   const auto found = STRATA_TRY(room_.state(to_string(layer_id)));
   const auto map = room_.surface_map(found.layer.resolution);
   if (!map) return tl::unexpected(map.error());

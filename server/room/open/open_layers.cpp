@@ -83,6 +83,7 @@ Result<Layer> OpenRoom::LayersPart::create(Layer layer,
 
 Result<Layer> OpenRoom::LayersPart::update(Layer layer,
                                            const store::IdempotentResponse<Layer>& answer) {
+  STRATA_TRY(room_.check_claimed());
   STRATA_TRY(check_layer(layer, room_.model()));
   auto updated = STRATA_TRY(room_.services_.store.layers().update(std::move(layer), answer));
   bool lock_falls = false;
@@ -122,6 +123,7 @@ Layer OpenRoom::LayersPart::replace(const Layer& stored) {
 Result<Layer> OpenRoom::LayersPart::mark_computed(LayerId id, const std::string& expression,
                                                   std::int64_t sequence,
                                                   const std::map<TableId, std::int64_t>& tables) {
+  STRATA_TRY(room_.check_claimed());
   auto stored =
       STRATA_TRY(room_.services_.store.layers().set_computed(id, expression, sequence, tables));
   return run_on(room_.strand_, [&] { return replace(stored); });

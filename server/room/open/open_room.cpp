@@ -231,6 +231,7 @@ std::shared_ptr<const mesh::ContactShadow> OpenRoom::contact_shadow(const Light&
 }
 
 Result<Model> OpenRoom::update_model(Model model, const store::IdempotentResponse<Model>& answer) {
+  STRATA_TRY(check_claimed());
   auto updated = STRATA_TRY(services_.store.models().update(std::move(model), answer));
   show_model(updated);
   return updated;
@@ -388,8 +389,13 @@ void OpenRoom::deposed(const Error& reason) {
   });
 }
 
+Result<void> OpenRoom::check_claimed() const {
+  if (following_part_) return tl::unexpected(moved_to({}));
+  return {};
+}
+
 Result<void> OpenRoom::check_not_deposed() {
-  if (!services_.options.node || following_part_) return {};
+  if (!services_.options.node) return {};
   // Ignores errors of this query. If the work also needs the database, the work reports them.
   const auto state = services_.store.journal().state(model_id_, {});
   if (!state || state->epoch == epoch_) return {};

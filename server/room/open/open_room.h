@@ -159,10 +159,13 @@ class OpenRoom final : public Room,
   static Result<std::shared_ptr<OpenRoom>> load(const RoomServices& services, Model model,
                                                 std::optional<std::int64_t> epoch);
   // Runs `work` on a worker when every earlier edit is durable. No edit and no recovery starts
-  // while it runs. Blocks. Returns `moved` if another node has claimed the model.
+  // while it runs. Blocks. Returns `moved` if another node has claimed the model, also if this room
+  // follows it.
   template <class T>
   Result<T> exclusively(std::function<Result<T>()> work);
   Result<void> check_not_deposed();
+  // Returns `moved` if the room follows another node. Such a room writes nothing.
+  Result<void> check_claimed() const;
   void tell_moved(const Error& why);    // on the strand
   void show_model(const Model& model);  // replaces the properties, and notifies listeners; blocks
   // Marks the layers as stale that are computed from this layer. Runs on the strand.
@@ -255,6 +258,7 @@ class OpenRoom final : public Room,
 
 template <class T>
 Result<T> OpenRoom::exclusively(std::function<Result<T>()> work) {
+  STRATA_TRY(check_claimed());
   auto promise = std::make_shared<std::promise<Result<T>>>();
   auto future = promise->get_future();
   ++unanswered_;

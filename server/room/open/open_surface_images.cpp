@@ -23,6 +23,7 @@ Result<SurfaceImage> OpenRoom::SurfaceImagesPart::find(const std::string& ref) c
 Result<SurfaceImage> OpenRoom::SurfaceImagesPart::create(
     SurfaceImage image, std::span<const std::uint8_t> picture,
     const store::IdempotentResponse<SurfaceImage>& answer) {
+  STRATA_TRY(room_.check_claimed());
   image.model_id = room_.model_id_;
   auto created = STRATA_TRY(room_.services_.store.surface_images().create(image, picture, answer));
   room_.surface_image_cache_->put(created);
@@ -32,6 +33,7 @@ Result<SurfaceImage> OpenRoom::SurfaceImagesPart::create(
 
 Result<SurfaceImage> OpenRoom::SurfaceImagesPart::update(
     const SurfaceImage& image, const store::IdempotentResponse<SurfaceImage>& answer) {
+  STRATA_TRY(room_.check_claimed());
   auto updated = STRATA_TRY(room_.services_.store.surface_images().update(image, answer));
   room_.surface_image_cache_->put(updated);
   tell(Listener::LayerChange::changed, updated);
@@ -40,6 +42,7 @@ Result<SurfaceImage> OpenRoom::SurfaceImagesPart::update(
 
 Result<void> OpenRoom::SurfaceImagesPart::erase(SurfaceImageId id,
                                                 const store::IdempotentResponse<>& answer) {
+  STRATA_TRY(room_.check_claimed());
   const auto known = room_.surface_image_cache_->find(to_string(id));
   STRATA_TRY(room_.services_.store.surface_images().remove(id, answer));
   room_.surface_image_cache_->drop(id);

@@ -20,6 +20,8 @@
 #include "room/pictures.h"
 #include "room/queries.h"
 #include "room/rooms.h"
+#include "room/surface_images.h"
+#include "store/content/trash.h"
 #include "store/journal/journal_merger.h"
 #include "store/journal/journal_reads.h"
 #include "store/nodes/nodes.h"
@@ -225,6 +227,35 @@ TEST_F(Following, a_follower_shows_each_edit_and_claims_nothing) {
   EXPECT_EQ(store_->journal().state(model_.id, {})->epoch, epoch);
   EXPECT_EQ(store_->journal().last_sequence(model_.id).value(), 4);
   EXPECT_FALSE(recorder_.has_moved);
+}
+
+TEST_F(Following, a_follower_refuses_every_change) {
+  follow();
+  const auto state = [&] { return store_->journal().model_state(model_.id).value(); };
+  const auto before = state();
+  const auto code = [](const auto& done) {
+    return done ? std::nullopt : std::optional(done.error().code);
+  };
+  auto& layers = follower_->layers();
+  auto& images = follower_->surface_images();
+  Layer made = layer_;
+  made.slug = made.name = "other";
+  const std::vector<std::optional<ErrorCode>> codes{
+      code(layers.create(made)),
+      code(layers.update(layer_)),
+      code(layers.widen(layer_, ValueType::u16)),
+      code(layers.erase(layer_.id)),
+      code(layers.put_in_trash(layer_.id, {})),
+      code(layers.restore({}, {})),
+      code(layers.mark_computed(layer_.id, "1", 0, {})),
+      code(follower_->edits().keep_sums(layer_.id)),
+      code(follower_->update_model(model_, {})),
+      code(images.create({}, {})),
+      code(images.update({})),
+      code(images.erase(SurfaceImageId(1))),
+  };
+  EXPECT_THAT(codes, ::testing::Each(std::optional(ErrorCode::moved)));
+  EXPECT_EQ(state(), before);
 }
 
 TEST_F(Following, any_edits_undos_decisions_and_changes_of_layers_arrive) {
