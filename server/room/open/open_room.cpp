@@ -335,7 +335,7 @@ void OpenRoom::move_away(const Error& why) {
 void OpenRoom::stop_saving(const Error& why) {
   run_on(strand_, [&] {
     if (moved_) return;
-    ++recovery_.suspensions;
+    ++recovery_.metadata_changes;
     recovery_.metadata_outdated = recovery_.compared = false;
     // Notifies listeners first, so clients keep refused edits until the database answers.
     if (is_current_.exchange(false))

@@ -174,7 +174,7 @@ class OpenRoom final : public Room,
   void recover();
   void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
   void on_journal_read(Result<JournalContents> contents);
-  void on_metadata_read(int suspensions_before, const Result<ModelMetadata>& metadata,
+  void on_metadata_read(int changes_before, const Result<ModelMetadata>& metadata,
                         std::shared_ptr<const mesh::ContactShadow> shadow);
   // Ends the suspension when the room has everything that the database has.
   void report_current();
@@ -237,7 +237,9 @@ class OpenRoom final : public Room,
     // have been saved although its response was lost, so the room does not have it.
     bool metadata_outdated = false;
     bool compared = false;  // the journal was compared since `continue_saving`
-    int suspensions = 0;    // the number of calls of `stop_saving`
+    // Counts the changes that outdate metadata which are being read: calls of `stop_saving`, and
+    // images that were created or deleted.
+    int metadata_changes = 0;
     bool working = false;   // a recovery is running
     bool closed = false;
     int gpu_losses = 0;

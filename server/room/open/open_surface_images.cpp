@@ -26,8 +26,11 @@ Result<SurfaceImage> OpenRoom::SurfaceImagesPart::create(
   STRATA_TRY(room_.check_claimed());
   image.model_id = room_.model_id_;
   auto created = STRATA_TRY(room_.services_.store.surface_images().create(image, picture, answer));
-  room_.surface_image_cache_->put(created);
-  tell(Listener::LayerChange::created, created);
+  run_on(room_.strand_, [&] {
+    ++room_.recovery_.metadata_changes;
+    room_.surface_image_cache_->put(created);
+    tell(Listener::LayerChange::created, created);
+  });
   return created;
 }
 
@@ -35,8 +38,10 @@ Result<SurfaceImage> OpenRoom::SurfaceImagesPart::update(
     const SurfaceImage& image, const store::IdempotentResponse<SurfaceImage>& answer) {
   STRATA_TRY(room_.check_claimed());
   auto updated = STRATA_TRY(room_.services_.store.surface_images().update(image, answer));
-  room_.surface_image_cache_->put(updated);
-  tell(Listener::LayerChange::changed, updated);
+  run_on(room_.strand_, [&] {
+    room_.surface_image_cache_->put(updated);
+    tell(Listener::LayerChange::changed, updated);
+  });
   return updated;
 }
 
@@ -45,8 +50,11 @@ Result<void> OpenRoom::SurfaceImagesPart::erase(SurfaceImageId id,
   STRATA_TRY(room_.check_claimed());
   const auto known = room_.surface_image_cache_->find(to_string(id));
   STRATA_TRY(room_.services_.store.surface_images().remove(id, answer));
-  room_.surface_image_cache_->drop(id);
-  if (known) tell(Listener::LayerChange::deleted, *known);
+  run_on(room_.strand_, [&] {
+    ++room_.recovery_.metadata_changes;
+    room_.surface_image_cache_->drop(id);
+    if (known) tell(Listener::LayerChange::deleted, *known);
+  });
   return {};
 }
 
@@ -66,9 +74,7 @@ void OpenRoom::SurfaceImagesPart::replace(const std::vector<SurfaceImage>& store
 }
 
 void OpenRoom::SurfaceImagesPart::tell(Listener::LayerChange change, const SurfaceImage& image) {
-  run_on(room_.strand_, [&] {
-    room_.participants_part_->tell([&](Listener& l) { l.surface_image_changed(change, image); });
-  });
+  room_.participants_part_->tell([&](Listener& l) { l.surface_image_changed(change, image); });
   room_.participants_part_->styles_changed();
 }
 

@@ -27,7 +27,7 @@ class OpenRoom::SurfaceImagesPart final : public SurfaceImages {
   void replace(const std::vector<SurfaceImage>& stored);
 
  private:
-  void tell(Listener::LayerChange change, const SurfaceImage& image);
+  void tell(Listener::LayerChange change, const SurfaceImage& image);  // on the strand
 
   OpenRoom& room_;
 };

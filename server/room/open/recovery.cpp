@@ -55,14 +55,14 @@ void OpenRoom::recover() {
   } else if (recovery_.metadata_outdated) {
     recovery_.working = true;
     boost::asio::post(services_.workers, [self = shared_from_this(), up = model_.up,
-                                          suspensions = recovery_.suspensions] {
+                                          changes = recovery_.metadata_changes] {
       auto metadata = read_metadata(self->services_.store, self->model_id_);
       std::shared_ptr<const mesh::ContactShadow> shadow;
       if (metadata && metadata->model.up != up)
         shadow = self->make_contact_shadow(metadata->model.up);
-      boost::asio::post(self->strand_, [self, suspensions, metadata = std::move(metadata),
+      boost::asio::post(self->strand_, [self, changes, metadata = std::move(metadata),
                                         shadow = std::move(shadow)]() mutable {
-        self->on_metadata_read(suspensions, metadata, std::move(shadow));
+        self->on_metadata_read(changes, metadata, std::move(shadow));
       });
     });
   } else {
@@ -134,11 +134,11 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
   recover();
 }
 
-void OpenRoom::on_metadata_read(int suspensions_before, const Result<ModelMetadata>& metadata,
+void OpenRoom::on_metadata_read(int changes_before, const Result<ModelMetadata>& metadata,
                                 std::shared_ptr<const mesh::ContactShadow> shadow) {
   recovery_.working = false;
   if (recovery_.closed) return;
-  if (suspensions_before != recovery_.suspensions) return recover();
+  if (changes_before != recovery_.metadata_changes) return recover();
   if (!metadata && metadata.error().code == ErrorCode::not_found) return deposed(metadata.error());
   if (!metadata) return retry_recovery(metadata.error());
   const auto is_known = [&](const Layer& layer) {
