@@ -2,6 +2,7 @@
 
 #include <boost/asio/post.hpp>
 
+#include "mesh/texels/tile_bounds.h"
 #include "room/caches/await.h"
 
 namespace strata::room {
@@ -32,6 +33,20 @@ void SurfaceMaps::request(int resolution, Ready ready) {
 
 Result<SurfaceMaps::MapPtr> SurfaceMaps::wait(int resolution) {
   return await_for_question<MapPtr>([&](auto ready) { request(resolution, std::move(ready)); });
+}
+
+void SurfaceMaps::make_bounds(int resolution) {
+  if (bounds(resolution)) return;
+  auto made = std::make_shared<const std::vector<mesh::BoundingSphere>>(
+      mesh::bound_tiles(*geometry_, resolution));
+  std::lock_guard lock(mutex_);
+  bounds_[resolution] = std::move(made);
+}
+
+SurfaceMaps::Bounds SurfaceMaps::bounds(int resolution) const {
+  std::lock_guard lock(mutex_);
+  const auto found = bounds_.find(resolution);
+  return found == bounds_.end() ? nullptr : found->second;
 }
 
 void SurfaceMaps::set_model(render::ModelHandle model) {

@@ -35,6 +35,13 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   // Blocks. For worker threads.
   Result<MapPtr> wait(int resolution);
 
+  // The bounds of the surface in each tile (mesh/texels/tile_bounds.h), for a room where nobody
+  // paints, so that it needs no map. `bounds` returns null until `make_bounds` was called. They take
+  // up to 256 KiB for each resolution, and stay.
+  using Bounds = std::shared_ptr<const std::vector<mesh::BoundingSphere>>;
+  void make_bounds(int resolution);
+  Bounds bounds(int resolution) const;
+
   // Sets the handle of the model, which is new after a lost context. Baked maps are uploaded again.
   void set_model(render::ModelHandle model);
   // Maps can be dropped to free memory, and are baked again on use.
@@ -72,6 +79,7 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   mutable std::mutex mutex_;
   render::ModelHandle model_ = 0;
   Entries entries_;
+  std::map<int, Bounds> bounds_;  // by resolution
 };
 
 }  // namespace strata::room

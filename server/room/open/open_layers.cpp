@@ -297,6 +297,7 @@ Result<void> OpenRoom::LayersPart::load(LayerId id) {
   auto layer =
       STRATA_TRY(room_.services_.store.layers().find(room_.model_id_, to_string(id), Role::owner));
   auto state = STRATA_TRY(read_layer_state(room_.services_.store, std::move(layer)));
+  if (room_.following_part_) room_.maps_->make_bounds(state.layer.resolution);
   const render::ModelHandle model = room_.model_handle();
   auto handles = add_layer(room_.services_.renderer, model, state);
   if (!handles) return tl::unexpected(room_.gpu_problem(handles.error()));
@@ -306,7 +307,7 @@ Result<void> OpenRoom::LayersPart::load(LayerId id) {
     remove_layer(room_.services_.renderer, *handles);
     return tl::unexpected(room_.gpu_problem({ErrorCode::not_found, {}, {}}));
   }
-  room_.maps_->request(state.layer.resolution, [](auto) {});
+  if (!room_.following_part_) room_.maps_->request(state.layer.resolution, [](auto) {});
   // Layers that are computed from the loaded layer may be up to date again.
   for (const Layer& other : room_.layer_list()) {
     if (!other.formula || std::ranges::none_of(other.formula->inputs, [&](const auto& input) {

@@ -139,7 +139,10 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::load(const RoomServices& services, M
       *room, journal->last_sequence);
   // Painting needs the maps of the existing layers, so they are baked in the background.
   for (const auto& state : room->layer_states())
-    room->maps_->request(state.layer.resolution, [](auto) {});
+    if (claimed)
+      room->maps_->request(state.layer.resolution, [](auto) {});
+    else
+      room->maps_->make_bounds(state.layer.resolution);
   return room;
 }
 

@@ -50,13 +50,14 @@ TileAddress address_of(TileAddress tile) { return tile; }
 
 // Returns the bounding box of the surface in the changed tiles.
 template <class Tiles>
-std::optional<render::FrameRequest::Box> box_of(const Tiles& changes, const mesh::SurfaceMap& map) {
+std::optional<render::FrameRequest::Box> box_of(
+    const Tiles& changes, const std::vector<mesh::BoundingSphere>& bounds_of_tile, int resolution) {
   render::FrameRequest::Box box{glm::vec3(std::numeric_limits<float>::max()),
                                 glm::vec3(std::numeric_limits<float>::lowest())};
-  const int tiles_per_side = map.resolution / kTileSize;
+  const int tiles_per_side = resolution / kTileSize;
   for (const auto& change : changes) {
     const TileAddress tile = address_of(change);
-    const auto& bounds = map.bounds_of_tile[std::size_t(tile.y) * tiles_per_side + tile.x];
+    const auto& bounds = bounds_of_tile[std::size_t(tile.y) * tiles_per_side + tile.x];
     if (bounds.radius < 0) continue;
     box.min = glm::min(box.min, bounds.center - bounds.radius);
     box.max = glm::max(box.max, bounds.center + bounds.radius);
@@ -435,7 +436,7 @@ void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed,
     return refuse(item, gpu_problem(uploaded.error()));
   }
   const auto map = parts_.maps->get(layer->layer.resolution);
-  const auto box = map ? box_of(computed.changes, *map) : std::nullopt;
+  const auto box = map ? box_of(computed.changes, map->bounds_of_tile, map->resolution) : std::nullopt;
   commit(item, *layer, std::move(computed), box);
 }
 
@@ -679,8 +680,10 @@ void EditPipeline::repaired(const std::optional<Error>& failure) {
     for (const auto& [layer_id, tiles] : std::exchange(stale_, {})) {
       const LayerState* layer = host_->find_layer(layer_id);
       if (!layer) continue;
-      const auto map = parts_.maps->get(layer->layer.resolution);
-      host_->content_changed(*layer, map ? box_of(tiles, *map) : std::nullopt, sequence_);
+      const int resolution = layer->layer.resolution;
+      const auto bounds = parts_.maps->bounds(resolution);
+      host_->content_changed(
+          *layer, bounds ? box_of(tiles, *bounds, resolution) : std::nullopt, sequence_);
     }
     return;
   }

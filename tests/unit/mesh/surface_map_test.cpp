@@ -15,6 +15,7 @@
 #include "mesh/surface/uv_islands.h"
 #include "mesh/texels/gutter_ring.h"
 #include "mesh/texels/slot_bits.h"
+#include "mesh/texels/tile_bounds.h"
 #include "strata_dirs.h"
 #include "support/meshes.h"
 #include "support/scan_atlas.h"
@@ -348,6 +349,8 @@ TEST_P(EveryGeometry, bounds_contain_the_positions_of_surface_and_gutter) {
     parts_of_slot[in_tree.slot].push_back(part);
   }
   ASSERT_EQ(map.tree.levels.back().size(), 1u);
+  const auto bounds_without_map = bound_tiles(geometry(), kResolution);
+  ASSERT_EQ(bounds_without_map.size(), map.bounds_of_tile.size());
   std::set<std::size_t> full_tiles;
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
     const std::size_t bx = map.block_of_slot[slot] % map.blocks_per_side,
@@ -364,6 +367,7 @@ TEST_P(EveryGeometry, bounds_contain_the_positions_of_surface_and_gutter) {
       const glm::vec3 position = map.position(slot, i);
       ASSERT_TRUE(holds(map.bounds_of_slot[slot], position));
       ASSERT_TRUE(holds(map.bounds_of_tile[tile], position));
+      ASSERT_TRUE(holds(bounds_without_map[tile], position));
       const auto part = std::ranges::find_if(parts_of_slot[slot], [&](std::uint32_t p) {
         return holds(map.tree.levels[0][p], position);
       });
