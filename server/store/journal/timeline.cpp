@@ -18,7 +18,8 @@ PgArray ids_of(const std::vector<LayerId>& layers) {
   return ids;
 }
 
-// Counts strokes, so that the counts stay the same when the batches of a stroke are merged.
+// Counts strokes, so that the counts stay the same when the batches of a stroke are merged. Only a
+// stroke that lasts for several intervals counts in each of them before, and once after the merge.
 // Clients receive times in milliseconds. The state at the time of an edit must include the edit.
 // The query returns one row for each interval, author and layer. The rows of an interval are joined
 // in memory, so the number of intervals limits the result.

@@ -171,6 +171,7 @@ Result<std::int64_t> Nodes::claim(ModelId model, const std::optional<Uuid>& self
   // Without a free connection, the claim is `busy` as well, but nobody has locked the model.
   if (claimed || claimed.error().code != ErrorCode::busy || !asked) return claimed;
   if (auto ended = end_sessions_of_owner(model); !ended) {
+    if (ended.error().code == ErrorCode::busy) return claimed;  // no connection was free
     log::warning("nodes: model " + to_string(model) +
                  " is locked, and the sessions of its former owner could not be ended. All nodes "
                  "must use the same role of PostgreSQL: " +
@@ -194,16 +195,18 @@ Result<std::int64_t> Nodes::try_claim(ModelId model, const std::optional<Uuid>& 
     // The update below sees the leases at its begin, but may wait for the row of the model. An
     // owner that continues in the meantime cannot join again until this transaction has ended, so
     // it compares its room with the journal after the claim.
+    // Both statements compare the lease of the owner with the begin of the transaction, so it cannot
+    // end between them.
     STRATA_TRY(
         connection.query("SELECT FROM models m JOIN nodes n ON n.id = m.owner_node "
-                         "WHERE m.id = $1 AND n.lease_until <= clock_timestamp() FOR SHARE OF n",
+                         "WHERE m.id = $1 AND n.lease_until <= now() FOR SHARE OF n",
                          Params().id(model)));
     Params params;
     params.id(model);
     auto claimed = STRATA_TRY(connection.query(
         "UPDATE models m SET owner_node = $2::text::uuid, owner_epoch = m.owner_epoch + 1 WHERE m.id = $1 "
         "AND (m.owner_node IS NULL OR m.owner_node = $2::text::uuid OR NOT EXISTS (SELECT FROM nodes n "
-        "WHERE n.id = m.owner_node AND n.lease_until > clock_timestamp() AND NOT n.draining)) "
+        "WHERE n.id = m.owner_node AND n.lease_until > now() AND NOT n.draining)) "
         "AND ($2::text IS NULL OR EXISTS (SELECT FROM nodes s WHERE s.id = $2::text::uuid "
         "AND s.lease_until > clock_timestamp() AND NOT s.draining)) RETURNING m.owner_epoch",
         optional_node(params, self)));
