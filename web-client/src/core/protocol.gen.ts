@@ -1475,6 +1475,7 @@ export interface SiteNode {
   version: string;
   /** Name of the GPU. */
   gpu: string;
+  /** Number of open models. Includes models of other nodes that the node shows to viewers. */
   open_models: number;
   /** Number of connections to the open models. */
   participants: number;
