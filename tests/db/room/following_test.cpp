@@ -177,14 +177,33 @@ class Following : public RoomTest {
       return std::ranges::find(now.layers, std::pair(change, slug)) != now.layers.end();
     });
   }
+  // Waits until the follower shows a state that was requested after this call.
+  void wait_until_asked() {
+    const auto begun = std::chrono::steady_clock::now(), deadline = begun + kLong;
+    const auto passed = [&] { return std::chrono::steady_clock::now() - begun; };
+    while (other_rooms_->follower_lag() >= passed() && begun + passed() < deadline)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_LT(begun + passed(), deadline);
+  }
+  // The tail cannot read states while this connection exists.
+  store::PgConnection block_tail() {
+    auto blocker = store::PgConnection::connect(dsn_);
+    EXPECT_TRUE(blocker);
+    EXPECT_TRUE(blocker->script("BEGIN; LOCK TABLE looks"));
+    return std::move(*blocker);
+  }
   // Makes the follower load the layer again, although its texels are damaged in the database. The
   // owner keeps it.
   void damage(const Layer& layer) {
     const std::string id = to_string(layer.id);
-    script("UPDATE all_layers SET binned = now(), binned_by = 'anna', binned_bytes = 0 WHERE id = " + id);
+    script(
+        "UPDATE all_layers SET binned = now(), binned_by = 'anna', binned_bytes = 0 WHERE id = " +
+        id);
     ASSERT_TRUE(told(recorder_, room::Listener::LayerChange::deleted, layer.slug));
-    script("UPDATE tile_revisions SET difference = 'damaged', key_tile = NULL WHERE layer_id = " + id +
-           "; UPDATE all_layers SET binned = NULL, binned_by = NULL, binned_bytes = NULL WHERE id = " + id);
+    script(
+        "UPDATE tile_revisions SET difference = 'damaged', key_tile = NULL WHERE layer_id = " + id +
+        "; UPDATE all_layers SET binned = NULL, binned_by = NULL, binned_bytes = NULL WHERE id = " +
+        id);
   }
   std::optional<Uuid> owner() {
     const auto node = store_->nodes().owner_of("pot");
@@ -449,15 +468,57 @@ TEST_F(Following, the_lag_grows_while_the_database_does_not_answer) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     return is_expected(other_rooms_->follower_lag());
   };
-  auto blocker = store::PgConnection::connect(dsn_);
-  ASSERT_TRUE(blocker) << blocker.error().detail;
-  ASSERT_TRUE(blocker->script("BEGIN; LOCK TABLE looks"));
+  auto blocker = block_tail();
   EXPECT_TRUE(wait_for([](const auto lag) { return lag > std::chrono::seconds(2); }));
   ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20)));
   EXPECT_TRUE(recorder_.edits.empty());
-  ASSERT_TRUE(blocker->script("COMMIT"));
+  ASSERT_TRUE(blocker.script("COMMIT"));
   EXPECT_TRUE(recorder_.wait([](const Recorder& now) { return now.edits.size() == 1; }));
   EXPECT_TRUE(wait_for([](const auto lag) { return lag < std::chrono::seconds(2); }));
+}
+
+TEST_F(Following, more_edits_arrive_at_once_than_participants_are_notified_of) {
+  follow();
+  auto blocker = block_tail();
+  std::vector<std::future<Answer>> answers;
+  for (int i = 0; i < 260; ++i)
+    answers.push_back(start(stroke(layer_, 1 + i % 9, {{260.0 + i % 120, 240}}, 10)));
+  for (auto& answer : answers) ASSERT_TRUE(answer.get());
+  ASSERT_TRUE(blocker.script("COMMIT"));
+  EXPECT_TRUE(recorder_.wait(
+      [](const Recorder& now) { return !now.edits.empty() && now.edits.back().sequence == 260; }));
+  expect_follower_equals_owner();
+}
+
+TEST_F(Following, viewers_of_a_node_that_drains_are_sent_to_the_owner) {
+  follow();
+  other_rooms_->drain();
+  EXPECT_TRUE(recorder_.wait([](const Recorder& now) { return now.has_moved.load(); }));
+  EXPECT_FALSE(other_rooms_->may_follow());
+  EXPECT_EQ(other_rooms_->elsewhere("pot").value(), a_.url);
+  EXPECT_EQ(owner(), a_.id);
+}
+
+TEST_F(Following, a_node_can_be_told_to_follow_no_models) {
+  EXPECT_TRUE(other_rooms_->may_follow());
+  room::RoomOptions options;
+  options.node = b_.id;
+  options.follows = false;
+  start_other(options);
+  EXPECT_FALSE(other_rooms_->may_follow());
+}
+
+TEST_F(Following, the_marks_of_an_undo_arrive_without_those_of_other_strokes) {
+  layer_.review = true;
+  layer_ = room()->layers().update(layer_).value();
+  ASSERT_TRUE(send(stroke(layer_, 5, {{300, 240}}, 20, "ben")));
+  ASSERT_TRUE(send(stroke(layer_, 6, {{320, 240}}, 20, "anna")));
+  follow();
+  expect_follower_equals_owner();
+  ASSERT_TRUE(send(request(layer_, room::UndoEdit{}, "anna")));
+  expect_follower_equals_owner();
+  ASSERT_TRUE(send(request(layer_, room::RedoEdit{}, "anna")));
+  expect_follower_equals_owner();
 }
 
 TEST_F(Following, a_follower_continues_with_the_next_owner) {
@@ -476,7 +537,9 @@ TEST_F(Following, participants_connect_again_when_this_node_becomes_the_owner) {
   rooms_.reset();
   script("UPDATE nodes SET lease_until = clock_timestamp() - interval '1 second' WHERE id = '" +
          to_string(a_.id) + "'");
+  wait_until_asked();
   EXPECT_FALSE(recorder_.has_moved) << "without an owner, the model is still shown";
+  EXPECT_FALSE(picture(*follower_).empty());
   const auto open = other_rooms_->open("pot", Role::owner);
   ASSERT_TRUE(open) << open.error().detail;
   EXPECT_TRUE(recorder_.wait([](const Recorder& told) { return told.has_moved.load(); }));
