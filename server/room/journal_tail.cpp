@@ -84,7 +84,8 @@ void JournalTail::ask() {
     } else if (following.begin(state->second, asked)) {
       boost::asio::post(following.is_slow() ? slow_ : quick_,
                         [weak = weak, now = state->second, asked] {
-                          if (const auto open = weak.lock()) open->following()->catch_up(now, asked);
+                          if (const auto open = weak.lock())
+                            open->following()->catch_up(now, asked);
                         });
     }
   }

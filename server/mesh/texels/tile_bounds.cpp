@@ -29,7 +29,8 @@ std::vector<BoundingSphere> bound_tiles(const Geometry& geometry, int resolution
   };
   for (std::size_t first = 0; first + 2 < geometry.indices.size(); first += 3) {
     std::array<const Vertex*, 3> corners{};
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = &geometry.vertices[geometry.indices[first + k]];
+    for (std::size_t k = 0; k < 3; ++k)
+      corners[k] = &geometry.vertices[geometry.indices[first + k]];
     glm::vec2 low = corners[0]->uv, high = low;
     for (const Vertex* corner : corners) {
       low = glm::min(low, corner->uv);

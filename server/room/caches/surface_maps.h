@@ -36,8 +36,8 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   Result<MapPtr> wait(int resolution);
 
   // The bounds of the surface in each tile (mesh/texels/tile_bounds.h), for a room where nobody
-  // paints, so that it needs no map. `bounds` returns null until `make_bounds` was called. They take
-  // up to 256 KiB for each resolution, and stay.
+  // paints, so that it needs no map. `bounds` returns null until `make_bounds` was called. They
+  // take up to 256 KiB for each resolution, and stay.
   using Bounds = std::shared_ptr<const std::vector<mesh::BoundingSphere>>;
   void make_bounds(int resolution);
   Bounds bounds(int resolution) const;

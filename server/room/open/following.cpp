@@ -22,8 +22,8 @@
 namespace strata::room {
 namespace {
 
-// Participants are notified of at most this number of edits at once. Of older edits, they only learn
-// which layers have changed.
+// Participants are notified of at most this number of edits at once. Of older edits, they only
+// learn which layers have changed.
 constexpr int kMaxEdits = 256;
 constexpr auto kSlow = std::chrono::milliseconds(200);
 constexpr auto kLoadPause = std::chrono::seconds(2);  // after a layer could not be loaded
@@ -126,8 +126,7 @@ Result<bool> OpenRoom::FollowingPart::read(const store::ModelState& now) {
 
 Result<bool> OpenRoom::FollowingPart::read_layers(const store::ModelState& now) {
   if (now.layers == known_.layers) return true;
-  const auto stored =
-      STRATA_TRY(room_.services_.store.layers().of_model(room_.id(), Role::owner));
+  const auto stored = STRATA_TRY(room_.services_.store.layers().of_model(room_.id(), Role::owner));
   const auto lacking = room_.layers_part_->take(stored);
   to_load_.insert(lacking.begin(), lacking.end());
   std::erase_if(to_load_, [&](const LayerId id) {
@@ -241,8 +240,8 @@ Result<TileMap> OpenRoom::FollowingPart::read_marks(const LayerState& held,
   for (const store::TailEdit& edit : edits) {
     if (edit.layer_id != held.layer.id) continue;
     if (edit.op == "undo" && has_marks) {
-      const auto undone = STRATA_TRY(
-          store.journal().undone_by(held.layer.id, edit.user, edit.sequence));
+      const auto undone =
+          STRATA_TRY(store.journal().undone_by(held.layer.id, edit.user, edit.sequence));
       painted.insert(painted.end(), undone.begin(), undone.end());
     } else {
       reads_all = reads_all || turns_others(edit);

@@ -240,7 +240,7 @@ class OpenRoom final : public Room,
     // Counts the changes that outdate metadata which are being read: calls of `stop_saving`, and
     // images that were created or deleted.
     int metadata_changes = 0;
-    bool working = false;   // a recovery is running
+    bool working = false;  // a recovery is running
     bool closed = false;
     int gpu_losses = 0;
     std::chrono::milliseconds retry_in = kFirstRetry;

@@ -436,7 +436,8 @@ void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed,
     return refuse(item, gpu_problem(uploaded.error()));
   }
   const auto map = parts_.maps->get(layer->layer.resolution);
-  const auto box = map ? box_of(computed.changes, map->bounds_of_tile, map->resolution) : std::nullopt;
+  const auto box =
+      map ? box_of(computed.changes, map->bounds_of_tile, map->resolution) : std::nullopt;
   commit(item, *layer, std::move(computed), box);
 }
 
@@ -682,8 +683,8 @@ void EditPipeline::repaired(const std::optional<Error>& failure) {
       if (!layer) continue;
       const int resolution = layer->layer.resolution;
       const auto bounds = parts_.maps->bounds(resolution);
-      host_->content_changed(
-          *layer, bounds ? box_of(tiles, *bounds, resolution) : std::nullopt, sequence_);
+      host_->content_changed(*layer, bounds ? box_of(tiles, *bounds, resolution) : std::nullopt,
+                             sequence_);
     }
     return;
   }

@@ -29,11 +29,12 @@ Result<States> read_states(PgConnection& connection, std::span<const ModelId> mo
   PgArray ids(oid::kInt8);
   for (const ModelId id : models) ids.add(id);
   auto rows = STRATA_TRY(connection.query(
-      sql("SELECT m.id, m.sequence, ", last_edit("m.id", "m.sequence"), ", m.owner_epoch, m.version, "
-      "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', l.id, l.version, l.computed_sequence), ',' "
-      "ORDER BY l.id), ''), 0) FROM layers l WHERE l.model_id = m.id), "
-      "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', i.id, i.version), ',' ORDER BY i.id), ''), 0) "
-      "FROM looks i WHERE i.model_id = m.id) FROM models m WHERE m.id = any($1)"),
+      sql("SELECT m.id, m.sequence, ", last_edit("m.id", "m.sequence"),
+          ", m.owner_epoch, m.version, "
+          "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', l.id, l.version, l.computed_sequence), ',' "
+          "ORDER BY l.id), ''), 0) FROM layers l WHERE l.model_id = m.id), "
+          "(SELECT hashtextextended(coalesce(string_agg(concat_ws(' ', i.id, i.version), ',' ORDER BY i.id), ''), 0) "
+          "FROM looks i WHERE i.model_id = m.id) FROM models m WHERE m.id = any($1)"),
       Params().array(ids)));
   States states;
   for (int i = 0; i < rows.rows(); ++i) {
@@ -66,8 +67,9 @@ std::unique_ptr<ModelStates> Journal::states() {
 }
 
 Result<ModelState> Journal::model_state(ModelId model_id) {
-  auto states = STRATA_TRY(pool_.read(
-      [&](PgConnection& connection) { return read_states(connection, {&model_id, 1}); }));
+  auto states = STRATA_TRY(pool_.read([&](PgConnection& connection) {
+    return read_states(connection, {&model_id, 1});
+  }));
   const auto found = states.find(model_id);
   if (found == states.end()) return no_such("model", to_string(model_id));
   return found->second;

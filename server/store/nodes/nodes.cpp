@@ -195,8 +195,8 @@ Result<std::int64_t> Nodes::try_claim(ModelId model, const std::optional<Uuid>& 
     // The update below sees the leases at its begin, but may wait for the row of the model. An
     // owner that continues in the meantime cannot join again until this transaction has ended, so
     // it compares its room with the journal after the claim.
-    // Both statements compare the lease of the owner with the begin of the transaction, so it cannot
-    // end between them.
+    // Both statements compare the lease of the owner with the begin of the transaction, so it
+    // cannot end between them.
     STRATA_TRY(
         connection.query("SELECT FROM models m JOIN nodes n ON n.id = m.owner_node "
                          "WHERE m.id = $1 AND n.lease_until <= now() FOR SHARE OF n",
