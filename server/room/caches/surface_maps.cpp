@@ -36,7 +36,10 @@ Result<SurfaceMaps::MapPtr> SurfaceMaps::wait(int resolution) {
 }
 
 void SurfaceMaps::make_bounds(int resolution) {
-  if (bounds(resolution)) return;
+  {
+    std::lock_guard lock(mutex_);
+    if (bounds_.contains(resolution)) return;
+  }
   auto made = std::make_shared<const std::vector<mesh::BoundingSphere>>(
       mesh::bound_tiles(*geometry_, resolution));
   std::lock_guard lock(mutex_);
@@ -45,8 +48,10 @@ void SurfaceMaps::make_bounds(int resolution) {
 
 SurfaceMaps::Bounds SurfaceMaps::bounds(int resolution) const {
   std::lock_guard lock(mutex_);
-  const auto found = bounds_.find(resolution);
-  return found == bounds_.end() ? nullptr : found->second;
+  if (const auto found = bounds_.find(resolution); found != bounds_.end()) return found->second;
+  const auto entry = entries_.find(resolution);
+  if (entry == entries_.end() || !entry->second.baked) return nullptr;
+  return {entry->second.baked, &entry->second.baked->bounds_of_tile};
 }
 
 void SurfaceMaps::set_model(render::ModelHandle model) {

@@ -35,9 +35,9 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   // Blocks. For worker threads.
   Result<MapPtr> wait(int resolution);
 
-  // The bounds of the surface in each tile (mesh/texels/tile_bounds.h), for a room where nobody
-  // paints, so that it needs no map. `bounds` returns null until `make_bounds` was called. They
-  // take up to 256 KiB for each resolution, and stay.
+  // The bounds of the surface in each tile, of the map, or without one (mesh/texels/tile_bounds.h).
+  // A room where nobody paints needs no map, so it calls `make_bounds`. They take up to 256 KiB for
+  // each resolution, and stay. `bounds` returns null if there is neither.
   using Bounds = std::shared_ptr<const std::vector<mesh::BoundingSphere>>;
   void make_bounds(int resolution);
   Bounds bounds(int resolution) const;
