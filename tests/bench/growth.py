@@ -169,6 +169,32 @@ def measure(server, camera):
     return found
 
 
+def make_site(server, models, layers, edits):
+    """Returns a camera of the large model, and the seconds that the edits took."""
+    server.import_model(
+        folded_grid(fold=0.001), MODEL + ".ply", name="Sheet", unit="mm", resolution=2048
+    )
+    server.ok("POST", f"/models/{MODEL}/layers", {"name": "Cracks", "type": "u8"})
+    camera = camera_from(server.get(f"/models/{MODEL}").json(), (0, 0, 1), up=(0, 1, 0))
+    stroke = {
+        "op": "stroke",
+        "value": 7,
+        "camera": camera,
+        "radius_px": 20,
+        "path": [[300, 240]],
+    }
+    server.ok("POST", f"/models/{MODEL}/layers/cracks/edits", stroke)
+    assert server.stop() == 0
+    server.start()
+    server.sql(
+        "CREATE TABLE stroke_of_layer AS SELECT tile_y, tile_x, difference FROM tile_revisions "
+        "ORDER BY tile_y, tile_x LIMIT 2"
+    )
+    copy_models(server, models)
+    copy_layers(server, layers)
+    return camera, seconds(lambda: make_edits(server, edits))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--edits", type=int, default=1_000_000)
@@ -179,28 +205,7 @@ def main():
     options = parser.parse_args()
     os.environ["STRATA_MERGE_AFTER"] = "1" if options.merge else "0"
     with StrataServer() as server:
-        server.import_model(
-            folded_grid(fold=0.001), MODEL + ".ply", name="Sheet", unit="mm", resolution=2048
-        )
-        server.ok("POST", f"/models/{MODEL}/layers", {"name": "Cracks", "type": "u8"})
-        camera = camera_from(server.get(f"/models/{MODEL}").json(), (0, 0, 1), up=(0, 1, 0))
-        stroke = {
-            "op": "stroke",
-            "value": 7,
-            "camera": camera,
-            "radius_px": 20,
-            "path": [[300, 240]],
-        }
-        server.ok("POST", f"/models/{MODEL}/layers/cracks/edits", stroke)
-        assert server.stop() == 0
-        server.start()
-        server.sql(
-            "CREATE TABLE stroke_of_layer AS SELECT tile_y, tile_x, difference FROM tile_revisions "
-            "ORDER BY tile_y, tile_x LIMIT 2"
-        )
-        copy_models(server, options.models)
-        copy_layers(server, options.layers)
-        took = seconds(lambda: make_edits(server, options.edits))
+        camera, took = make_site(server, options.models, options.layers, options.edits)
         before = sizes(server)
         print(f"made {options.edits} edits in {took:.0f} s; MB: {before}", flush=True)
         after = None

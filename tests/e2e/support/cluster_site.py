@@ -14,7 +14,7 @@ import urllib.parse
 
 from support.cameras import camera_from
 from support.contract import Contract
-from support.live_client import AWAY, LAST_RECTANGLE, LiveClient, Refused
+from support.live_client import AWAY, LAST_RECTANGLE, Connections, Refused
 from support.painted_model import PaintedModel
 from support.painters import HttpPainter, LivePainter
 from support.strata_server import LONG_S, StrataServer, _place_of_data, wait_for
@@ -64,20 +64,6 @@ class Gate(StrataServer):
             target = path
             assert time.monotonic() < end, f"{method} {path} got no answer in {LONG_S} s: {answer}"
             time.sleep(0.05)
-
-
-class Connections:
-    """Live connections to a model, one after the other. After a message `moved`, the next one goes
-    to the node that the message names."""
-
-    def __init__(self, gate, model):
-        self.gate, self.model, self.last = gate, model, None
-
-    def connect(self):
-        moved, self.last = self.last.moved if self.last else "", None
-        base = urllib.parse.urlsplit(moved).path
-        self.last = LiveClient(self.gate, self.model, base=base)
-        return self.last
 
 
 class Times:

@@ -7,6 +7,7 @@ import os
 import socket
 import struct
 import time
+import urllib.parse
 
 from support.strata_server import LONG_S
 
@@ -209,3 +210,17 @@ class LiveClient:
     def hello(self, **more):
         self.send({"op": "hello", "client": "e2e", **more})
         return self.receive_until("welcome")
+
+
+class Connections:
+    """Live connections to a model through a proxy, one after the other. After a message `moved`, the
+    next one goes to the node that the message names."""
+
+    def __init__(self, gate, model, token=None):
+        self.gate, self.model, self.token, self.last = gate, model, token, None
+
+    def connect(self):
+        moved, self.last = self.last.moved if self.last else "", None
+        base = urllib.parse.urlsplit(moved).path
+        self.last = LiveClient(self.gate, self.model, token=self.token, base=base)
+        return self.last

@@ -1,4 +1,5 @@
 """nginx with one of the project's own configurations, for tests behind a proxy."""
+import itertools
 import os
 import re
 import shutil
@@ -9,6 +10,7 @@ from support.missing import missing
 from support.strata_server import _end_with_parent, wait_for
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
+HOW_TO = "docs/how-to/run-several-nodes.md"
 
 
 def nginx_binary():
@@ -36,6 +38,31 @@ def site_of(file, replacements):
         site, found = re.subn(pattern, ours, site)
         assert found == 1, pattern
     return site
+
+
+def site_of_nodes(port, ports, spread=False):
+    """Returns the example of a configuration (examples/nodes/nginx.conf) for the nodes a, b, … on
+    these ports, at most three. With `spread`, it distributes the live connections over all nodes
+    (docs/how-to/run-several-nodes.md)."""
+    replacements = [(r"listen 80;", f"listen 127.0.0.1:{port};")]
+    for usual, name, own in itertools.zip_longest((8081, 8082, 8083), "abc", ports):
+        if own is None:
+            replacements += [
+                (rf" *server 127\.0\.0\.1:{usual} .*\n", ""),
+                (rf" *location /node/{name}/ .*\n", ""),
+            ]
+        else:
+            replacements += [
+                (rf"server 127\.0\.0\.1:{usual} ", f"server 127.0.0.1:{own} "),
+                (rf"http://127\.0\.0\.1:{usual}/;", f"http://127.0.0.1:{own}/;"),
+            ]
+    if spread:
+        with open(os.path.join(ROOT, HOW_TO), encoding="utf-8") as page:
+            [line] = re.findall(
+                r"^  '~\^/api/v1/models/\[.*/live\$' .*;$", page.read(), re.MULTILINE
+            )
+        replacements.append((r"\n(  '~\^/api/v1/models/)", lambda at: f"\n{line}\n{at[1]}"))
+    return site_of("examples/nodes/nginx.conf", replacements)
 
 
 class Nginx:

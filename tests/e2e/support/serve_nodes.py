@@ -9,7 +9,7 @@ import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
-from support.nginx import Nginx, free_port, site_of  # noqa: E402
+from support.nginx import Nginx, free_port, site_of_nodes  # noqa: E402
 from support.nodes import FAULT_WORDS, Site  # noqa: E402
 from support.strata_server import LONG_S, wait_for  # noqa: E402
 
@@ -66,16 +66,8 @@ def main():
         os.chmod(folder, 0o755)
         urls = [f"{url}/node/{name}" for name in NAMES]
         with Site(len(NAMES), urls=urls, demo="--demo" in sys.argv) as site:
-            replacements = [(r"listen 80;", f"listen 127.0.0.1:{port};")]
-            for usual, node in zip((8081, 8082, 8083), site.nodes):
-                for before, after in (("server ", " max_fails"), ("http://", "/;")):
-                    replacements.append(
-                        (
-                            rf"{before}127\.0\.0\.1:{usual}{after}",
-                            f"{before}127.0.0.1:{node.own_port}{after}",
-                        )
-                    )
-            with Nginx(folder, site_of("examples/nodes/nginx.conf", replacements), port):
+            ports = [node.own_port for node in site.nodes]
+            with Nginx(folder, site_of_nodes(port, ports), port):
                 print(json.dumps({"url": url, "token": site.token}), flush=True)
                 commands = Commands(site, url)
                 for line in sys.stdin:
