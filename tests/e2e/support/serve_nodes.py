@@ -1,7 +1,5 @@
 """Runs three nodes behind nginx, with the project's example of a configuration, for tests in
-JavaScript (js/nodes.mjs). Reads one command per line, and answers each with a line of JSON. Ends
-at the end of its input."""
-import json
+JavaScript (js/nodes.mjs), which sends commands."""
 import os
 import signal
 import sys
@@ -9,6 +7,7 @@ import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
+from support.command_lines import answer_commands, say  # noqa: E402
 from support.nginx import Nginx, free_port, site_of_nodes  # noqa: E402
 from support.nodes import FAULT_WORDS, Site  # noqa: E402
 from support.strata_server import LONG_S, wait_for  # noqa: E402
@@ -68,15 +67,8 @@ def main():
         with Site(len(NAMES), urls=urls, demo="--demo" in sys.argv) as site:
             ports = [node.own_port for node in site.nodes]
             with Nginx(folder, site_of_nodes(port, ports), port):
-                print(json.dumps({"url": url, "token": site.token}), flush=True)
-                commands = Commands(site, url)
-                for line in sys.stdin:
-                    name, *arguments = line.split()
-                    try:
-                        answer = getattr(commands, name)(*arguments)
-                    except Exception as error:  # pylint: disable=broad-except
-                        answer = {"error": f"{name}: {error!r}"}
-                    print(json.dumps(answer), flush=True)
+                say({"url": url, "token": site.token})
+                answer_commands(Commands(site, url))
 
 
 if __name__ == "__main__":

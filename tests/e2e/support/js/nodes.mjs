@@ -1,4 +1,5 @@
-// Three nodes behind nginx for a test in JavaScript. support/serve_nodes.py runs them.
+// Three nodes behind nginx for a test in JavaScript. support/serve_nodes.py runs them over one
+// PostgreSQL, and support/serve_cluster.py over a cluster of three.
 import { spawn } from "node:child_process";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
@@ -9,12 +10,16 @@ export class NodeSite extends StrataServer {
   #answers = []; // lines that no command has taken yet
   #waiting = []; // commands without an answer
 
+  constructor({ program = "serve_nodes.py", ...more } = {}) {
+    super(more);
+    this.program = join(kRoot, "tests/e2e/support", program);
+  }
+
   async start() {
-    this.process = spawn(
-      "/usr/bin/python3",
-      [join(kRoot, "tests/e2e/support/serve_nodes.py"), ...(this.demo ? ["--demo"] : [])],
-      { env: process.env, stdio: ["pipe", "pipe", "pipe"] },
-    );
+    this.process = spawn("/usr/bin/python3", [this.program, ...(this.demo ? ["--demo"] : [])], {
+      env: process.env,
+      stdio: ["pipe", "pipe", "pipe"],
+    });
     this.ended = new Promise((resolve) =>
       this.process.once("exit", (code, signal) => {
         for (const { failed } of this.#waiting.splice(0))
@@ -28,9 +33,10 @@ export class NodeSite extends StrataServer {
       if (waiting) waiting.done(JSON.parse(line));
       else this.#answers.push(JSON.parse(line));
     });
-    const { url, token } = await this.#answer();
+    const { url, token, owner } = await this.#answer();
     this.url = url;
     this.token = token;
+    this.owner = owner; // the name and password of the owner, if there is a password
     return this;
   }
 
@@ -39,7 +45,7 @@ export class NodeSite extends StrataServer {
     return new Promise((done, failed) => this.#waiting.push({ done, failed }));
   }
 
-  /** Runs a command of serve_nodes.py, one at a time. */
+  /** Runs a command of the program, one at a time. */
   async command(...words) {
     this.process.stdin.write(`${words.join(" ")}\n`);
     const answer = await this.#answer();
