@@ -1,5 +1,5 @@
-// A page paints behind nginx while the node of its model is killed and stopped. The page continues at
-// another node, and nothing is lost.
+// Two pages paint behind nginx while the node of their model is killed, and one of them while it is
+// stopped. The pages continue at another node, and nothing is lost.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
@@ -17,7 +17,17 @@ const kOfLostNode = [...kOfLostServer, "502", "503", "504"];
 const history = async () =>
   (await site.json("GET", `/models/${kModel}/layers/marks/edits?limit=1000`)).edits;
 
-const kept = () => unsaved_ids(page);
+const kept = (of = page) => unsaved_ids(of);
+
+/** Waits until a page shows the newest edit. */
+const shows_all = async (of) => {
+  const newest = Math.max(...(await history()).map(({ sequence }) => sequence));
+  const canvas = of.page.locator("strata-stage canvas").first();
+  await wait_for(
+    async () => Number(await canvas.evaluate(({ dataset }) => dataset.sceneSequence)) >= newest,
+    "a picture with the newest edit",
+  );
+};
 
 async function shot(name) {
   if (process.env.STRATA_TEST_OUTPUT)
@@ -48,7 +58,7 @@ async function check_journal(ids) {
   );
 }
 
-let browser, site, page;
+let browser, other, site, page;
 const sockets = [];
 const painted = new Set();
 
@@ -60,11 +70,17 @@ test.beforeAll(async () => {
   page.on("websocket", (socket) => sockets.push(socket.url()));
   await site.start();
   await site.json("POST", `/models/${kModel}/layers`, { name: "Marks", type: "u8" });
-  await browser.sign_in(site, site.token);
-  await page.goto(`${site.url}/models/${kModel}`);
-  await browser.drawn();
-  await page.getByRole("button", { name: words.layers.select("Marks") }).click();
-  await page.keyboard.press("b");
+  other = await Browser.open();
+  for (const [each, secret] of [
+    [browser, site.token],
+    [other, await site.add_person("ben", "annotator")],
+  ]) {
+    await each.sign_in(site, secret);
+    await each.page.goto(`${site.url}/models/${kModel}`);
+    await each.drawn();
+    await each.page.getByRole("button", { name: words.layers.select("Marks") }).click();
+    await each.page.keyboard.press("b");
+  }
 });
 
 test("the page paints at the node that nginx chooses", async () => {
@@ -82,24 +98,35 @@ test("the page paints at the node that nginx chooses", async () => {
   );
 });
 
-test("the node is killed during a stroke: the page continues at another node", async () => {
+test("the node is killed during a stroke: both pages continue at another node", async () => {
   const before = await site.command("owner", kModel);
   const edits_before = (await history()).length;
   let begun = 0;
   await drag_slowly(0.5, async () => {
     // Starts to wait for the banner before the node is killed, because the page can reconnect very
     // soon.
-    const lost = page.locator(".banner").waitFor();
+    const lost = [browser, other].map((each) => each.page.locator(".banner").waitFor());
     await site.command("kill_owner", kModel);
     begun = Date.now();
-    await lost;
+    await Promise.all(lost);
   });
   for (const id of await kept()) painted.add(id);
   await shot("nodes_killed");
-  await page.locator(".banner").waitFor({ state: "detached" });
-  await browser.saved();
+  for (const each of [browser, other]) {
+    await each.page.locator(".banner").waitFor({ state: "detached" });
+    await each.saved();
+  }
   console.log(`killed: all is saved after ${(Date.now() - begun) / 1000} s`);
   await wait_for(async () => (await kept()).length === 0, "all to be saved");
+  const of_both = (await history()).length;
+  await other.drag([
+    [0.4, 0.45],
+    [0.6, 0.45],
+  ]);
+  await wait_for(async () => (await history()).length > of_both, "the stroke of the other page");
+  await other.saved();
+  assert.deepEqual(await kept(other.page), []);
+  for (const each of [browser, other]) await shows_all(each);
   assert.ok((await history()).length > edits_before, "the stroke is lost");
   await check_journal([...painted]);
   assert.notEqual((await site.command("owner", kModel)).url, before.url);
@@ -143,13 +170,13 @@ test("administrators see the nodes, and the page has nothing else to complain of
   await dialog.getByText("/node/a").first().waitFor();
   await dialog.getByText(words.nodes.states.ready).first().waitFor();
   await shot("nodes_dialog");
-  browser.assert_no_complaints(kOfLostNode);
+  for (const each of [browser, other]) each.assert_no_complaints(kOfLostNode);
   const { statuses } = await site.command("stop");
   assert.deepEqual([...new Set(statuses)], [0]);
 });
 
 test.afterEach(({}, info) => attach_log(info, site));
 test.afterAll(async () => {
-  await browser?.close();
+  for (const each of [browser, other]) await each?.close();
   await site?.remove();
 });
