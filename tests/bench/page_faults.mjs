@@ -220,12 +220,13 @@ async function history(site) {
 
 /** Kills a part while everybody paints. Returns the figures of this round, and the pictures. */
 async function measure(site, people, part) {
+  const started = Date.now();
   for (const person of people) {
     person.batches.begin();
     person.paint();
   }
   await wait_for(
-    () => people.every(({ batches }) => batches.painted_since(0) !== undefined),
+    () => people.every(({ batches }) => batches.painted_since(started) !== undefined),
     "the first strokes",
   );
   const killed = await site.command(part);
