@@ -33,11 +33,10 @@ import time
 import uuid
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
+from growth import MODEL, make_site
 from support.latencies import percentile
 from support.machine import machine
 from support.strata_server import StrataServer, wait_for
-
-from growth import MODEL, make_site
 
 PROMISE_S = 60
 PAINTERS = 2
