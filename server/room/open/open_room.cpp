@@ -4,7 +4,6 @@
 #include <boost/asio/post.hpp>
 
 #include "core/log.h"
-#include "core/no_such.h"
 #include "core/text/slug.h"
 #include "room/open/following.h"
 #include "room/open/open_edits.h"
