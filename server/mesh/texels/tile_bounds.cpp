@@ -11,7 +11,7 @@
 namespace strata::mesh {
 namespace {
 
-// A triangle can own a texel beside it, and the gutter is 2 texels wide. Vertices are rounded.
+// A triangle can own a texel next to it, and the gutter is 2 texels wide. Vertices are rounded.
 constexpr float kMarginTexels = 4;
 
 struct Box {

@@ -54,6 +54,7 @@ export class StrataAuditLog extends LitElement {
       }
       table {
         width: 100%;
+        min-width: 36rem; /* a phone scrolls the table instead of breaking its words */
         border-collapse: collapse;
       }
       th,
