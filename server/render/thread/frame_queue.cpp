@@ -1,8 +1,8 @@
 #include "render/thread/frame_queue.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
-#include <set>
 #include <utility>
 
 #include "render/thread/screen_rect.h"
@@ -25,6 +25,17 @@ void inherit(FrameRequest& request, const FrameRequest& other) {
   for (const auto& box : *other.changed) add_box(*request.changed, box, kMaxBoxes);
 }
 
+// Requests for the same picture have the same hash. Views rarely have equal cameras, so the camera
+// and the model suffice.
+std::size_t hash_of(const FrameRequest& request) {
+  std::size_t hash = std::hash<ModelHandle>()(request.model);
+  const auto add = [&](double value) { hash = hash * 1099511628211u ^ std::hash<double>()(value); };
+  for (glm::length_t column = 0; column < 4; ++column)
+    for (glm::length_t row = 0; row < 4; ++row) add(request.camera.view[column][row]);
+  add(request.width);
+  return hash;
+}
+
 }  // namespace
 
 bool same_picture(const FrameRequest& a, const FrameRequest& b) {
@@ -41,8 +52,8 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
   Pushed pushed{true, std::nullopt};
   const bool waited = state.waits.has_value();
   if (waited) {
-    inherit(request, (*state.waits)->request);
-    auto& askers = (*state.waits)->askers;
+    inherit(request, (*state.waits)->task.request);
+    auto& askers = (*state.waits)->task.askers;
     const auto mine = std::find_if(askers.begin(), askers.end(),
                                    [&](const auto& one) { return one.view == view; });
     pushed.displaced = std::move(mine->done);
@@ -51,20 +62,21 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
     return {false, std::move(done)};
   }
   enter_half(state, request.acting, waited);
-  // A request for a part is not combined with a request for the whole frame.
-  auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const FrameTask& other) {
-    return other.request.changed.has_value() == request.changed.has_value() &&
-           same_picture(other.request, request);
-  });
-  if (same == waiting_.end()) {
-    waiting_.push_back({std::move(request), {}, {}});
-    same = std::prev(waiting_.end());
+  const std::size_t hash = hash_of(request);
+  const auto same = find_same(request, hash);
+  Place place;
+  if (same) {
+    place = *same;
+    inherit(place->task.request, request);
+    remove_turn(place);
   } else {
-    inherit(same->request, request);
+    waiting_.push_back({{std::move(request), {}, {}}, 0, ++numbers_, hash});
+    place = std::prev(waiting_.end());
+    by_content_.emplace(hash, place);
   }
-  same->askers.push_back({view, std::move(done)});
-  same->turn.acting = is_acting(*same);
-  state.waits = same;
+  place->task.askers.push_back({view, std::move(done)});
+  state.waits = place;
+  sort(place);
   ++askers_;
   return pushed;
 }
@@ -73,11 +85,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
 // gets the served time of the last turn in the new half.
 void FrameQueue::enter_half(View& state, bool acting, bool waited) {
   Half& to = half(acting);
-  const bool is_empty =
-      to.under_way == 0 && std::ranges::none_of(waiting_, [&](const FrameTask& task) {
-        return task.turn.acting == acting;
-      });
-  if (is_empty) to.served_ms = std::max(to.served_ms, now_ms_);
+  if (to.under_way == 0 && turns(acting).empty()) to.served_ms = std::max(to.served_ms, now_ms_);
   if (std::exchange(state.acting, acting) != acting)
     state.served_ms = to.now_ms;
   else if (!state.under_way && !waited)
@@ -89,29 +97,70 @@ bool FrameQueue::is_acting(const FrameTask& task) const {
                              [&](const auto& asker) { return views_.at(asker.view).acting; });
 }
 
+void FrameQueue::sort(Place place) {
+  FrameTask& task = place->task;
+  task.turn.acting = is_acting(task);
+  place->turn_ms = std::numeric_limits<double>::infinity();
+  for (const auto& asker : task.askers)
+    if (const View& state = views_.at(asker.view); state.acting == task.turn.acting)
+      place->turn_ms = std::min(place->turn_ms, state.served_ms);
+  turns(task.turn.acting).insert(place);
+}
+
 void FrameQueue::leave(ViewHandle view, View& state) {
   const Place place = *state.waits;
-  std::erase_if(place->askers, [&](const auto& one) { return one.view == view; });
-  if (place->askers.empty())
-    waiting_.erase(place);
+  remove_turn(place);
+  std::erase_if(place->task.askers, [&](const auto& one) { return one.view == view; });
+  if (place->task.askers.empty())
+    erase(place);
   else
-    place->turn.acting = is_acting(*place);
+    sort(place);
   state.waits.reset();
   --askers_;
 }
 
-FrameTask::Turn FrameQueue::turn_of(const FrameTask& task) const {
-  double ms = std::numeric_limits<double>::infinity();
-  for (const auto& asker : task.askers)
-    if (const View& state = views_.at(asker.view); state.acting == task.turn.acting)
-      ms = std::min(ms, state.served_ms);
-  return {task.turn.acting, ms, task.request.large};
+void FrameQueue::erase(Place place) {
+  auto [entry, end] = by_content_.equal_range(place->hash);
+  while (entry != end && entry->second != place) ++entry;
+  if (entry != end) by_content_.erase(entry);
+  waiting_.erase(place);
+}
+
+std::optional<FrameQueue::Place> FrameQueue::find_same(const FrameRequest& request,
+                                                       std::size_t hash) const {
+  // A request for a part is not combined with a request for the whole frame.
+  for (auto [entry, end] = by_content_.equal_range(hash); entry != end; ++entry) {
+    const FrameRequest& other = entry->second->task.request;
+    if (other.changed.has_value() == request.changed.has_value() && same_picture(other, request))
+      return entry->second;
+  }
+  return std::nullopt;
+}
+
+void FrameQueue::set_drew(ViewHandle view, View& state, const FrameRequest& request,
+                          std::size_t hash) {
+  forget_drew(view, state);
+  state.drew = request;
+  state.drew_hash = hash;
+  if (request.model != 0) drew_.emplace(hash, view);
+}
+
+void FrameQueue::forget_drew(ViewHandle view, View& state) {
+  if (!state.drew) return;
+  auto [entry, end] = drew_.equal_range(state.drew_hash);
+  while (entry != end && entry->second != view) ++entry;
+  if (entry != end) drew_.erase(entry);
+  state.drew.reset();
+}
+
+void FrameQueue::erase_view(ViewHandle view) {
+  forget_drew(view, views_.at(view));
+  views_.erase(view);
 }
 
 bool FrameQueue::is_before(const FrameTask::Turn& a, const FrameTask::Turn& b) const {
   if (a.acting == b.acting) return a.ms < b.ms;
-  const double of_a = half(a.acting).served_ms, of_b = half(b.acting).served_ms;
-  return of_a < of_b || (of_a == of_b && a.acting);
+  return a.acting == acting_are_next();
 }
 
 bool FrameQueue::is_under_way(const FrameTask& task) const {
@@ -119,104 +168,97 @@ bool FrameQueue::is_under_way(const FrameTask& task) const {
                              [&](const auto& asker) { return views_.at(asker.view).under_way; });
 }
 
-std::optional<ViewHandle> FrameQueue::drawer_of(const FrameTask& task) const {
+std::optional<ViewHandle> FrameQueue::drawer_of(const Waiting& waiting) const {
+  const FrameTask& task = waiting.task;
   if (is_under_way(task)) return std::nullopt;
   const auto has_it = [&](const View& state) {
-    return state.drew && same_picture(*state.drew, task.request);
+    return state.drew && state.drew_hash == waiting.hash && same_picture(*state.drew, task.request);
   };
   for (const auto& asker : task.askers)
     if (has_it(views_.at(asker.view))) return asker.view;
-  if (task.request.model != 0)
-    for (const auto& [view, state] : views_) {
-      if (!has_it(state)) continue;
-      return state.under_way ? std::nullopt : std::optional(view);
-    }
+  for (auto [entry, end] = drew_.equal_range(waiting.hash); entry != end; ++entry) {
+    const View& state = views_.at(entry->second);
+    if (!has_it(state)) continue;
+    return state.under_way ? std::nullopt : std::optional(entry->second);
+  }
   return task.askers.front().view;
 }
 
-template <class Predicate>
-std::optional<FrameTask> FrameQueue::take_if(const Predicate& predicate) {
-  std::set<const FrameTask*> cannot;
-  for (;;) {
-    Place next = waiting_.end();
-    FrameTask::Turn turn;
-    for (auto place = waiting_.begin(); place != waiting_.end(); ++place) {
-      const auto its = turn_of(*place);
-      if (cannot.contains(&*place) || !predicate(*place, its)) continue;
-      if (next != waiting_.end() && !is_before(its, turn)) continue;
-      turn = its;
-      next = place;
-    }
-    if (next == waiting_.end()) return std::nullopt;
-    const auto drawer = drawer_of(*next);
-    if (!drawer) {
-      cannot.insert(&*next);
-      continue;
-    }
-    Half& from = half(turn.acting);
-    large_under_way_ += next->request.large;
-    from.now_ms = std::max(from.now_ms, turn.ms);
-    now_ms_ = std::max(now_ms_, from.served_ms);
-    ++from.under_way;
-    next->request.view = *drawer;
-    next->turn = turn;
-    for (const auto& asker : next->askers) {
-      View& state = views_.at(asker.view);
-      state.waits.reset();
-      state.under_way = true;
-    }
-    askers_ -= next->askers.size();
-    View& drawing = views_.at(*drawer);
-    drawing.under_way = true;
-    if (!drawing.gone) drawing.drew = next->request;
-    FrameTask task = std::move(*next);
-    waiting_.erase(next);
-    return task;
+FrameTask FrameQueue::take_at(Place place, ViewHandle drawer) {
+  const FrameTask::Turn turn = turn_of(*place);
+  Half& from = half(turn.acting);
+  large_under_way_ += place->task.request.large;
+  from.now_ms = std::max(from.now_ms, turn.ms);
+  now_ms_ = std::max(now_ms_, from.served_ms);
+  ++from.under_way;
+  remove_turn(place);
+  place->task.request.view = drawer;
+  place->task.turn = turn;
+  for (const auto& asker : place->task.askers) {
+    View& state = views_.at(asker.view);
+    state.waits.reset();
+    state.under_way = true;
   }
+  askers_ -= place->task.askers.size();
+  View& drawing = views_.at(drawer);
+  drawing.under_way = true;
+  if (!drawing.gone) set_drew(drawer, drawing, place->task.request, place->hash);
+  FrameTask task = std::move(place->task);
+  erase(place);
+  return task;
 }
 
 std::optional<FrameTask> FrameQueue::take() {
   std::lock_guard lock(mutex_);
-  return take_if([this](const FrameTask& task, const FrameTask::Turn&) {
-    return !task.request.large || large_under_way_ < kMaxLarge;
-  });
+  for (const bool acting : {acting_are_next(), !acting_are_next()})
+    for (const Place place : turns(acting)) {
+      if (place->task.request.large && large_under_way_ >= kMaxLarge) continue;
+      if (const auto drawer = drawer_of(*place)) return take_at(place, *drawer);
+    }
+  return std::nullopt;
 }
 
 std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> under_way) {
   std::lock_guard lock(mutex_);
-  // The next turn of each half. A rectangle must not use a turn of the other half. It also must not
-  // use a whole frame's turn to precede the other half. Otherwise rectangles alone could use all
-  // the time of their half.
-  std::array<std::optional<FrameTask::Turn>, 2> next;
-  for (const FrameTask& task : waiting_) {
-    auto& first = next[task.turn.acting ? 0 : 1];
-    if (is_under_way(task)) continue;
-    if (const auto its = turn_of(task); !first || its.ms < first->ms) first = its;
-  }
   // A band of a large image takes longer than most frames, which need not wait for its end.
   const bool only_large =
       !under_way.empty() && std::ranges::all_of(under_way, &FrameTask::Turn::large);
   const auto may_go_before = [&](const FrameTask& task) {
     return task.request.changed.has_value() || (only_large && !task.request.large);
   };
-  return take_if([&](const FrameTask& task, const FrameTask::Turn& its) {
-    if (is_under_way(task) || !may_go_before(task)) return false;
-    const auto &own = next[its.acting ? 0 : 1], &other = next[its.acting ? 1 : 0];
-    if (other && is_before(*other, its)) return false;
-    return std::ranges::all_of(under_way, [&](const FrameTask::Turn& one) {
-      return is_before(its, one) && (its.acting == one.acting || its.ms <= own->ms);
-    });
-  });
+  for (const bool acting : {acting_are_next(), !acting_are_next()}) {
+    // The next turn of this half. A rectangle must not use a whole frame's turn to precede the
+    // other half. Otherwise rectangles alone could use all the time of their half.
+    std::optional<double> next_ms;
+    for (const Place place : turns(acting)) {
+      if (is_under_way(place->task)) continue;
+      const auto turn = turn_of(*place);
+      if (!next_ms) next_ms = turn.ms;
+      // No later turn of this half precedes the frames in progress if this turn does not.
+      if (!std::ranges::all_of(under_way, [&](const FrameTask::Turn& one) {
+            return is_before(turn, one) && (turn.acting == one.acting || turn.ms <= *next_ms);
+          }))
+        break;
+      if (!may_go_before(place->task)) continue;
+      if (const auto drawer = drawer_of(*place)) return take_at(place, *drawer);
+    }
+    // A rectangle must not use a turn of the other half either.
+    if (next_ms) break;
+  }
+  return std::nullopt;
 }
 
 void FrameQueue::finished(const FrameTask& task, double took_ms) {
   std::lock_guard lock(mutex_);
   const auto rests = [&](ViewHandle view, double served_ms) {
-    const auto state = views_.find(view);
-    if (state == views_.end()) return;
-    state->second.under_way = false;
-    state->second.served_ms += served_ms;
-    if (state->second.gone && !state->second.waits) views_.erase(state);
+    const auto found = views_.find(view);
+    if (found == views_.end()) return;
+    View& state = found->second;
+    state.under_way = false;
+    if (state.waits) remove_turn(*state.waits);
+    state.served_ms += served_ms;
+    if (state.waits) sort(*state.waits);
+    if (state.gone && !state.waits) erase_view(view);
   };
   for (const auto& asker : task.askers)
     rests(asker.view, took_ms / static_cast<double>(task.askers.size()));
@@ -230,19 +272,23 @@ void FrameQueue::finished(const FrameTask& task, double took_ms) {
 
 void FrameQueue::forget(ViewHandle view) {
   std::lock_guard lock(mutex_);
-  const auto state = views_.find(view);
-  if (state == views_.end()) return;
-  state->second.gone = true;
-  state->second.drew.reset();
+  const auto found = views_.find(view);
+  if (found == views_.end()) return;
+  View& state = found->second;
+  state.gone = true;
+  forget_drew(view, state);
   // A waiting request of this view keeps its turn. It then fails because the view does not exist.
-  if (!state->second.waits && !state->second.under_way) views_.erase(state);
+  if (!state.waits && !state.under_way) erase_view(view);
 }
 
 std::vector<FrameTask> FrameQueue::take_all() {
   std::lock_guard lock(mutex_);
-  std::vector<FrameTask> tasks(std::make_move_iterator(waiting_.begin()),
-                               std::make_move_iterator(waiting_.end()));
+  std::vector<FrameTask> tasks;
+  for (Waiting& waiting : waiting_) tasks.push_back(std::move(waiting.task));
+  for (Turns& turns : turns_) turns.clear();
+  by_content_.clear();
   waiting_.clear();
+  drew_.clear();
   views_.clear();
   halves_ = {};
   large_under_way_ = 0;

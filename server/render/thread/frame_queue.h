@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <list>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -45,6 +47,9 @@ bool same_picture(const FrameRequest& a, const FrameRequest& b);
 // 5. Bands of large images (`FrameRequest::large`) wait for their turns like all other requests.
 //    Only a few of them are in progress at a time. Between their drawing steps, smaller frames
 //    whose turns come first can be drawn.
+//
+// The GPU thread asks for a rectangle before each of its steps, so this takes the same time for one
+// waiting view and for a thousand: the frames are sorted by their turns and found by their content.
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t max_askers) : max_askers_(max_askers) {}
@@ -68,7 +73,13 @@ class FrameQueue {
   std::vector<FrameTask> take_all();  // also forgets the frames in progress and all views
 
  private:
-  using Place = std::list<FrameTask>::iterator;
+  struct Waiting {
+    FrameTask task;
+    double turn_ms = 0;        // place in `turns_`
+    std::uint64_t number = 0;  // a lower number waits longer
+    std::size_t hash = 0;      // of the frame's content
+  };
+  using Place = std::list<Waiting>::iterator;
   struct View {
     bool acting = false;
     double served_ms = 0;  // compared with other views of its half
@@ -76,6 +87,7 @@ class FrameQueue {
     bool under_way = false;
     bool gone = false;                 // removed, but with a frame that waits or is in progress
     std::optional<FrameRequest> drew;  // the last frame that the view drew
+    std::size_t drew_hash = 0;
   };
   // The state of acting users or of onlookers.
   struct Half {
@@ -83,23 +95,47 @@ class FrameQueue {
     double now_ms = 0;  // served time of the view with the last turn
     std::size_t under_way = 0;
   };
+  // Frames with equal turns are sorted by the time of their arrival.
+  struct ByTurn {
+    bool operator()(const Place& a, const Place& b) const {
+      return a->turn_ms < b->turn_ms || (a->turn_ms == b->turn_ms && a->number < b->number);
+    }
+  };
+  using Turns = std::set<Place, ByTurn>;
+
   void leave(ViewHandle view, View& state);
   Half& half(bool acting) { return halves_[acting ? 0 : 1]; }
   const Half& half(bool acting) const { return halves_[acting ? 0 : 1]; }
+  Turns& turns(bool acting) { return turns_[acting ? 0 : 1]; }
   void enter_half(View& state, bool acting, bool waited);
   bool is_acting(const FrameTask& task) const;     // any requester acts
   bool is_under_way(const FrameTask& task) const;  // a requester has another frame in progress
   bool is_before(const FrameTask::Turn& a, const FrameTask::Turn& b) const;
-  FrameTask::Turn turn_of(const FrameTask& task) const;
+  bool acting_are_next() const { return half(true).served_ms <= half(false).served_ms; }
+  static FrameTask::Turn turn_of(const Waiting& waiting) {
+    return {waiting.task.turn.acting, waiting.turn_ms, waiting.task.request.large};
+  }
+  // Sorts a frame again after a change to its requesters or their served times.
+  void sort(Place place);
+  void remove_turn(Place place) { turns(place->task.turn.acting).erase(place); }
+  void erase(Place place);  // from `waiting_` and the indexes
+  // Returns the waiting frame with the same content, and the same choice of whole frame or part.
+  std::optional<Place> find_same(const FrameRequest& request, std::size_t hash) const;
+  void set_drew(ViewHandle view, View& state, const FrameRequest& request, std::size_t hash);
+  void forget_drew(ViewHandle view, View& state);
+  void erase_view(ViewHandle view);
   // Returns the view that will draw the frame, or nothing while that view has a frame in progress.
-  std::optional<ViewHandle> drawer_of(const FrameTask& task) const;
-  template <class Predicate>
-  std::optional<FrameTask> take_if(const Predicate& predicate);
+  std::optional<ViewHandle> drawer_of(const Waiting& waiting) const;
+  FrameTask take_at(Place place, ViewHandle drawer);
 
   const std::size_t max_askers_;
   std::mutex mutex_;
-  std::list<FrameTask> waiting_;  // oldest first
+  std::list<Waiting> waiting_;  // oldest first
+  std::array<Turns, 2> turns_;  // the frames of `waiting_`: of acting users, of onlookers
+  std::unordered_multimap<std::size_t, Place> by_content_;  // the frames of `waiting_`
   std::unordered_map<ViewHandle, View> views_;
+  std::unordered_multimap<std::size_t, ViewHandle> drew_;  // the views by `View::drew`
+  std::uint64_t numbers_ = 0;
   std::size_t askers_ = 0;  // requesters of the frames in `waiting_`
   std::array<Half, 2> halves_;
   std::size_t large_under_way_ = 0;

@@ -365,6 +365,24 @@ TEST_F(FrameTurns, pictures_that_differ_in_anything_are_not_shared) {
   EXPECT_FALSE(queue.take());
 }
 
+TEST_F(FrameTurns, five_hundred_onlookers_take_turns_in_the_order_of_their_waiting) {
+  FrameQueue queue(1024);
+  constexpr ViewHandle kOnlookers = 500, kPainter = 1000;
+  std::vector<ViewHandle> order;
+  for (ViewHandle view = 1; view <= kOnlookers; ++view) push(queue, part(view));
+  for (ViewHandle round = 0; round < 2; ++round)
+    for (ViewHandle i = 0; i < kOnlookers; ++i) {
+      order.push_back(draw(queue, 5));
+      push(queue, part(order.back()));
+      // The painter needs less than half of the time, so nobody's frame precedes the painter's.
+      if (i % 2 != 0) continue;
+      push(queue, acting(part(kPainter)));
+      ASSERT_EQ(draw(queue, 5), kPainter) << "round " << round << ", turn " << i;
+    }
+  for (std::size_t i = 0; i < order.size(); ++i)
+    ASSERT_EQ(order[i], i % kOnlookers + 1) << "turn " << i;
+}
+
 TEST_F(FrameTurns, what_is_shared_costs_each_a_part) {
   FrameQueue queue(8);
   push(queue, shared(whole(1)));
