@@ -79,6 +79,7 @@ struct Renderer::Impl {
 
   std::optional<Job> start(std::optional<FrameTask> task) {
     if (!task) return std::nullopt;
+    task->add_late_changes();
     auto frame = std::make_shared<FrameJob>(std::move(*task));
     under_way.push_back(frame);
     return Job{[this, frame] {
@@ -106,7 +107,7 @@ struct Renderer::Impl {
       Step step(GpuScene& at) { return all.continues(*task) ? frame.step(at) : Step::done; }
       void abort(const Error& problem) { frame.abort(problem); }
     };
-    FrameTask frame{task->request, {{task->request.view, answer}}, {}};
+    FrameTask frame{task->request, {{task->request.view, answer, {}}}, {}};
     post(Lane::idle,
          std::make_shared<Refinement>(Refinement{refinements, task, FrameJob(std::move(frame))}));
   }
@@ -286,10 +287,10 @@ void Renderer::remove_view(ViewHandle view) {
   impl_->post_removal([view](GpuScene& scene) { scene.remove_view(view); });
 }
 
-void Renderer::draw(FrameRequest request, Done<SharedFrame> done) {
+void Renderer::draw(FrameRequest request, Done<SharedFrame> done, LateChanges late_changes) {
   if (request.refinement) return impl_->refine(std::move(request), std::move(done));
   impl_->refinements.overtake(request.view);
-  auto pushed = impl_->frames.push(std::move(request), std::move(done));
+  auto pushed = impl_->frames.push(std::move(request), std::move(done), std::move(late_changes));
   if (pushed.displaced) {
     const Error problem =
         pushed.accepted ? superseded_error()

@@ -241,7 +241,13 @@ class Renderer {
   // time (render/thread/frame_queue).
   void add_view(ModelHandle model, Done<ViewHandle> done);
   void remove_view(ViewHandle view);
-  void draw(FrameRequest request, Done<SharedFrame> done);
+  //
+  // A request may wait for its turn while people paint. `late_changes` is called once, when the
+  // frame begins, on the GPU thread and before any pixel of the frame is shaded. It returns the
+  // boxes that changed since the call of `draw`, which are then part of `FrameRequest::changed`. It
+  // is not called for a refinement, or if the request fails before its turn.
+  using LateChanges = std::function<std::vector<FrameRequest::Box>()>;
+  void draw(FrameRequest request, Done<SharedFrame> done, LateChanges late_changes = {});
 
   // Blocks until all earlier requests, except frames, are complete.
   void finish();

@@ -23,6 +23,7 @@ void FlowControl::on_reset() {
   ready_ = false;
   out_.reset();
   boxes_.clear();
+  surface_waits_ = false;
   everything_waits_ = true;
   refine_waits_ = false;
 }
@@ -49,7 +50,7 @@ void FlowControl::on_change(const Box& box, std::int64_t sequence) {
 void FlowControl::on_change_everywhere(std::int64_t sequence) {
   on_news();
   sequence_ = std::max(sequence_, sequence);
-  everything_waits_ = true;
+  surface_waits_ = true;
 }
 
 void FlowControl::on_style() {
@@ -71,7 +72,8 @@ std::optional<FlowControl::Draw> FlowControl::next() {
   if (!ready_ || !camera_ || out_ || refused_) return std::nullopt;
   if (last_frame_ - acked_ >= static_cast<std::uint64_t>(window_)) return std::nullopt;
   const bool refine = refine_waits_ && !moving_;
-  const bool changes = everything_waits_ || refine || !boxes_.empty();
+  const bool whole = everything_waits_ || surface_waits_ || refine;
+  const bool changes = whole || !boxes_.empty();
   // A refinement waits until the client has all frames. Otherwise it would delay the next frame.
   if (!changes && (!rests_ || refined_ || moving_ || acked_ < last_frame_)) return std::nullopt;
 
@@ -79,9 +81,9 @@ std::optional<FlowControl::Draw> FlowControl::next() {
             *camera_,   std::nullopt, Quality::still,
             1};
   if (!changes) draw.samples = samples_at_rest_;
-  if (everything_waits_ || refine || !changes) {
+  if (whole || !changes) {
     draw.quality = moving_ ? Quality::moving : Quality::still;
-    everything_waits_ = false;
+    everything_waits_ = surface_waits_ = false;
   } else {
     draw.changed = boxes_;
     // The camera still moves. The whole frame is drawn at full quality when it stops.
@@ -90,19 +92,33 @@ std::optional<FlowControl::Draw> FlowControl::next() {
   boxes_.clear();
   camera_waits_ = false;
   news_ = false;
+  out_is_past_ = past_.has_value();
   out_ = draw;
   return draw;
+}
+
+std::vector<FlowControl::Box> FlowControl::on_begun(std::uint64_t ticket) {
+  if (!out_ || out_->ticket != ticket || out_is_past_ || past_) return {};
+  // A rectangle cannot show a change of the whole surface, so it also shows no newer edit.
+  if (surface_waits_ && out_->changed) return {};
+  surface_waits_ = false;
+  out_->sequence = sequence_;
+  std::vector<Box> late = std::exchange(boxes_, {});
+  if (!out_->changed) return {};  // all pixels are drawn
+  for (const Box& box : late) render::add_box(*out_->changed, box, kMaxBoxes);
+  return late;
 }
 
 std::optional<FlowControl::Numbered> FlowControl::on_drawn(std::uint64_t ticket, bool sent) {
   if (!out_ || out_->ticket != ticket) return std::nullopt;
   const bool everything = !out_->changed;
+  const std::int64_t sequence = out_->sequence;
   // After an empty whole frame there is nothing to draw at full quality.
   if (out_->samples > 1) refined_ = true;
   if (everything) refine_waits_ = sent && out_->quality == Quality::moving;
   out_.reset();
   if (!sent) return std::nullopt;
-  return Numbered{++last_frame_, !refine_waits_};
+  return Numbered{++last_frame_, !refine_waits_, sequence};
 }
 
 bool FlowControl::on_failed(std::uint64_t ticket) {

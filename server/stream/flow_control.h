@@ -14,8 +14,10 @@ namespace strata::stream {
 //
 // 1. The newest camera replaces older ones. `dropped` counts the cameras that were replaced before
 //    they were drawn.
-// 2. At most one draw is in progress, and at most `window` frames are drawn but not acknowledged.
-//    Until an acknowledgment arrives, changes are only kept, and are drawn later.
+// 2. At most one draw is requested, and at most `window` frames are drawn but not acknowledged.
+//    Until an acknowledgment arrives, changes are only kept, and are drawn later. A draw may wait
+//    long for its turn. When it begins, it takes in the changes that arrived since then
+//    (`on_begun`), so the wait for a turn is not followed by a second one.
 // 3. All changes are eventually drawn, because a failed draw returns its changes.
 // 4. Without a change, nothing is drawn. A camera that equals the current one only changes the
 //    camera number of later frames.
@@ -48,8 +50,9 @@ class FlowControl {
     int samples = 1;  // per pixel; more than one: a refinement
   };
   struct Numbered {
-    std::uint64_t frame = 0;  // starts at 1, without gaps
-    bool still = false;       // after this frame, the whole screen has full quality
+    std::uint64_t frame = 0;    // starts at 1, without gaps
+    bool still = false;         // after this frame, the whole screen has full quality
+    std::int64_t sequence = 0;  // the newest edit in the frame
   };
 
   void on_ready();  // the view exists; before this call nothing is drawn
@@ -70,6 +73,9 @@ class FlowControl {
 
   // Returns the draw to start now. Returns nothing while a draw is in progress.
   std::optional<Draw> next();
+  // The turn of the draw has come, and its pixels are not read yet. Returns the boxes that changed
+  // since `next`, which the frame must show too. Returns nothing if the ticket is invalid.
+  std::vector<Box> on_begun(std::uint64_t ticket);
   // The draw is complete. Returns the number of the frame to send, or nothing if the frame is empty
   // (`sent` is false) or the ticket is invalid.
   std::optional<Numbered> on_drawn(std::uint64_t ticket, bool sent);
@@ -101,11 +107,13 @@ class FlowControl {
   bool moving_ = false;
   bool camera_waits_ = false;  // no draw contains the newest camera yet
   bool everything_waits_ = false;
-  bool refine_waits_ = false;  // the screen shows a frame of lower quality
-  std::vector<Box> boxes_;     // changes that no draw contains yet
+  bool surface_waits_ = false;  // the whole surface changed, and no draw contains this yet
+  bool refine_waits_ = false;   // the screen shows a frame of lower quality
+  std::vector<Box> boxes_;      // changes that no draw contains yet
   std::int64_t sequence_;
   std::optional<std::int64_t> past_;  // if set, used instead of `sequence_`
-  std::optional<Draw> out_;           // the draw in progress
+  std::optional<Draw> out_;           // the requested draw
+  bool out_is_past_ = false;          // `out_` shows an earlier state
   const int samples_at_rest_;
   bool rests_ = false;    // nothing has changed for some time
   bool refined_ = false;  // the frame is refined, or will not be refined

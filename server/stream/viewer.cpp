@@ -120,7 +120,7 @@ FrameMessages frame_messages(const FlowControl::Draw& draw, const FlowControl::N
   header.view_id = view_id;
   header.frame = static_cast<std::uint32_t>(number.frame);
   header.camera_seq = draw.camera_seq;
-  header.scene_sequence = static_cast<std::uint64_t>(draw.sequence);
+  header.scene_sequence = static_cast<std::uint64_t>(number.sequence);
   header.full_width = static_cast<std::uint32_t>(frame.width);
   header.full_height = static_cast<std::uint32_t>(frame.height);
   header.render_us = microseconds(frame.render_ms);
@@ -387,18 +387,28 @@ void Viewer::step() {
   request.changed = draw.changed;
   std::tie(request.width, request.height) =
       picture_size(draw.camera, impl_->options, reduced.scale);
-  impl_->context.renderer->draw(std::move(request),
-                                [self = weak_from_this(), draw,
-                                 jpeg = reduced.jpeg](const Result<render::SharedFrame>& frame) {
-                                  auto viewer = self.lock();
-                                  if (!viewer) return;
-                                  if (frame)
-                                    viewer->on_drawn(draw, jpeg, *frame);
-                                  else if (draw.samples > 1)
-                                    viewer->on_not_refined(draw.ticket, frame.error());
-                                  else
-                                    viewer->on_failed(draw.ticket, frame.error());
-                                });
+  impl_->context.renderer->draw(
+      std::move(request),
+      [self = weak_from_this(), draw,
+       jpeg = reduced.jpeg](const Result<render::SharedFrame>& frame) {
+        auto viewer = self.lock();
+        if (!viewer) return;
+        if (frame)
+          viewer->on_drawn(draw, jpeg, *frame);
+        else if (draw.samples > 1)
+          viewer->on_not_refined(draw.ticket, frame.error());
+        else
+          viewer->on_failed(draw.ticket, frame.error());
+      },
+      [self = weak_from_this(), ticket = draw.ticket] {
+        const auto viewer = self.lock();
+        return viewer ? viewer->late_changes(ticket) : std::vector<render::FrameRequest::Box>();
+      });
+}
+
+std::vector<render::FrameRequest::Box> Viewer::late_changes(std::uint64_t ticket) {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->flow.on_begun(ticket);
 }
 
 void Viewer::on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::SharedFrame frame) {

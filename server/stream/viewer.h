@@ -28,6 +28,7 @@ struct StreamContext {
 // - The newest camera replaces older ones. Frames contain the camera's number.
 // - At most `window` frames are sent but not acknowledged. At this limit, nothing is drawn until an
 //   acknowledgment arrives. Changes in the meantime are drawn then.
+// - A frame shows all changes that were reported before its turn to be drawn.
 // - Without a change nothing is sent.
 // - After frames of a moving camera, a full-quality frame follows within 250 ms of the last input.
 // - Quality never decreases during painting.
@@ -83,6 +84,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   bool on_view(std::uint64_t generation,
                const Result<render::ViewHandle>& view);  // false: the view is not needed
   void step();
+  std::vector<render::FrameRequest::Box> late_changes(std::uint64_t ticket);
   void on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::SharedFrame frame);
   void on_failed(std::uint64_t ticket, const Error& problem);
   void on_not_refined(std::uint64_t ticket, const Error& problem);

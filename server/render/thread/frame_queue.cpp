@@ -45,7 +45,17 @@ bool same_picture(const FrameRequest& a, const FrameRequest& b) {
          a.smooth == b.smooth && a.align_to_16 == b.align_to_16;
 }
 
-FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedFrame> done) {
+void FrameTask::add_late_changes() {
+  for (const Asker& asker : askers) {
+    if (!asker.late_changes) continue;
+    const auto boxes = asker.late_changes();
+    for (const auto& box : boxes)
+      if (request.changed) add_box(*request.changed, box, kMaxBoxes);
+  }
+}
+
+FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedFrame> done,
+                                    Renderer::LateChanges late_changes) {
   std::lock_guard lock(mutex_);
   const ViewHandle view = request.view;
   View& state = views_[view];
@@ -74,7 +84,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
     place = std::prev(waiting_.end());
     by_content_.emplace(hash, place);
   }
-  place->task.askers.push_back({view, std::move(done)});
+  place->task.askers.push_back({view, std::move(done), std::move(late_changes)});
   state.waits = place;
   sort(place);
   ++askers_;

@@ -19,6 +19,7 @@ struct FrameTask {
   struct Asker {
     ViewHandle view = 0;
     Renderer::Done<SharedFrame> done;
+    Renderer::LateChanges late_changes;  // may be empty
   };
   FrameRequest request;  // `request.view` draws the frame and need not be a requester
   std::vector<Asker> askers;
@@ -27,6 +28,9 @@ struct FrameTask {
     double ms = 0;  // the requester's served time at the frame's turn
     bool large = false;
   } turn;
+
+  // Called when the frame begins. Adds the changes since the requests, which the frame then shows.
+  void add_late_changes();
 };
 
 // Returns whether both requests show the same frame, except for changes on the surface.
@@ -60,7 +64,8 @@ class FrameQueue {
     // The callback of the rejected or replaced request.
     std::optional<Renderer::Done<SharedFrame>> displaced{};
   };
-  Pushed push(FrameRequest request, Renderer::Done<SharedFrame> done);
+  Pushed push(FrameRequest request, Renderer::Done<SharedFrame> done,
+              Renderer::LateChanges late_changes = {});
   // Returns the next frame, but skips views with a frame in progress. The frame's views are then in
   // progress until `finished`.
   std::optional<FrameTask> take();

@@ -383,6 +383,32 @@ TEST_F(FrameTurns, five_hundred_onlookers_take_turns_in_the_order_of_their_waiti
     ASSERT_EQ(order[i], i % kOnlookers + 1) << "turn " << i;
 }
 
+TEST_F(FrameTurns, a_frame_that_begins_shows_what_changed_while_it_waited) {
+  FrameQueue queue(8);
+  int asked = 0;
+  const auto late = [&](Boxes boxes) {
+    return [&asked, boxes = std::move(boxes)] {
+      ++asked;
+      return boxes;
+    };
+  };
+  const auto ignore = [](const Result<SharedFrame>&) {};
+  queue.push(shared(part(1)), ignore, late({kOther}));
+  queue.push(shared(part(2)), ignore, late({kBox, kOther}));
+  auto rectangle = queue.take();
+  ASSERT_TRUE(rectangle);
+  EXPECT_EQ(asked, 0);
+  rectangle->add_late_changes();
+  EXPECT_EQ(*rectangle->request.changed, (Boxes{kBox, kOther}));
+  EXPECT_EQ(asked, 2) << "each view learns that its changes are shown";
+  queue.push(whole(3), ignore, late({kBox}));
+  auto whole_frame = queue.take();
+  ASSERT_TRUE(whole_frame);
+  whole_frame->add_late_changes();
+  EXPECT_FALSE(whole_frame->request.changed);
+  EXPECT_EQ(asked, 3);
+}
+
 TEST_F(FrameTurns, what_is_shared_costs_each_a_part) {
   FrameQueue queue(8);
   push(queue, shared(whole(1)));

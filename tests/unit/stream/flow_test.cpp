@@ -197,6 +197,87 @@ TEST(StreamFlow, edits_that_come_while_there_is_no_credit_are_drawn_together_onc
   EXPECT_EQ(draw->sequence, 109);
 }
 
+TEST(StreamFlow, a_draw_takes_in_the_edits_that_came_while_it_waited_for_its_turn) {
+  FlowControl flow = ready(2);
+  flow.on_camera(1, camera_at(1), false);
+  settle(flow);
+  flow.on_change(box_at(1), 1);
+  const auto draw = flow.next();
+  ASSERT_TRUE(draw);
+  flow.on_change(box_at(2), 2);
+  flow.on_change(box_at(3), 3);
+  EXPECT_EQ(flow.on_begun(draw->ticket), (std::vector{box_at(2), box_at(3)}));
+  flow.on_change(box_at(4), 4);  // the frame has begun, so it does not show this edit
+  const auto number = flow.on_drawn(draw->ticket, true);
+  ASSERT_TRUE(number);
+  EXPECT_EQ(number->sequence, 3);
+  const auto next = flow.next();
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->changed, std::vector{box_at(4)});
+  EXPECT_EQ(next->sequence, 4);
+  EXPECT_TRUE(flow.on_begun(draw->ticket).empty()) << "a ticket that is not valid";
+}
+
+TEST(StreamFlow, a_draw_that_fails_gives_back_what_it_took_in) {
+  FlowControl flow = ready(2);
+  flow.on_camera(1, camera_at(1), false);
+  settle(flow);
+  flow.on_change(box_at(1), 1);
+  const auto draw = flow.next();
+  flow.on_change(box_at(2), 2);
+  flow.on_begun(draw->ticket);
+  EXPECT_TRUE(flow.on_failed(draw->ticket));
+  const auto again = flow.next();
+  ASSERT_TRUE(again && again->changed);
+  EXPECT_EQ(*again->changed, (std::vector{box_at(1), box_at(2)}));
+  EXPECT_EQ(again->sequence, 2);
+}
+
+TEST(StreamFlow, a_whole_picture_shows_every_edit_before_its_turn) {
+  FlowControl flow = ready(2);
+  flow.on_camera(1, camera_at(1), false);
+  const auto draw = flow.next();
+  flow.on_change(box_at(1), 1);
+  flow.on_change_everywhere(2);
+  EXPECT_TRUE(flow.on_begun(draw->ticket).empty()) << "it has no rectangles";
+  EXPECT_EQ(flow.on_drawn(draw->ticket, true)->sequence, 2);
+  EXPECT_FALSE(flow.next()) << "nothing is left to draw";
+}
+
+TEST(StreamFlow, a_rectangle_does_not_stand_for_a_change_of_the_whole_surface) {
+  FlowControl flow = ready(2);
+  flow.on_camera(1, camera_at(1), false);
+  settle(flow);
+  flow.on_change(box_at(1), 1);
+  const auto draw = flow.next();
+  flow.on_change_everywhere(2);
+  flow.on_change(box_at(3), 3);
+  EXPECT_TRUE(flow.on_begun(draw->ticket).empty());
+  EXPECT_EQ(flow.on_drawn(draw->ticket, true)->sequence, 1);
+  const auto whole = flow.next();
+  ASSERT_TRUE(whole);
+  EXPECT_FALSE(whole->changed);
+  EXPECT_EQ(whole->sequence, 3);
+}
+
+TEST(StreamFlow, a_picture_of_the_past_takes_in_no_edit) {
+  FlowControl flow = ready(2);
+  flow.on_camera(1, camera_at(1), false);
+  settle(flow);
+  flow.on_past(5);
+  flow.on_style();
+  const auto past = flow.next();
+  ASSERT_TRUE(past);
+  flow.on_past({});  // returns to the newest state while the picture of the past waits
+  flow.on_change_everywhere(9);
+  EXPECT_TRUE(flow.on_begun(past->ticket).empty());
+  EXPECT_EQ(flow.on_drawn(past->ticket, true)->sequence, 5);
+  const auto newest = flow.next();
+  ASSERT_TRUE(newest);
+  EXPECT_FALSE(newest->changed);
+  EXPECT_EQ(newest->sequence, 9);
+}
+
 TEST(StreamFlow, very_many_boxes_become_few_that_cover_them_all) {
   FlowControl flow = ready(1);
   flow.on_camera(1, camera_at(1), false);
@@ -441,7 +522,7 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
     std::uint64_t sent = 0, acked = 0, camera_seq = 0;
     Camera newest = camera_at(0), shown;
     bool shown_still = false;
-    int edit = 0;
+    int edit = 1;
 
     auto draw_done = [&](int what) {
       if (what == 0) {
@@ -465,6 +546,8 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
           ASSERT_EQ(out->camera, shown) << "parts fit only the picture they are parts of";
         }
         ASSERT_EQ(number->still, shown_still);
+        ASSERT_TRUE(unseen.empty() || *unseen.begin() > number->sequence)
+            << "a frame shows every edit up to its sequence";
       }
       out.reset();
     };
@@ -478,7 +561,7 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
     };
 
     for (int step = 0; step < 200; ++step) {
-      switch (roll(7)) {
+      switch (roll(8)) {
         case 0:
           newest = camera_at(roll(4));
           flow.on_camera(++camera_seq, newest, true);
@@ -499,6 +582,12 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
           if (acked < sent) flow.on_ack(++acked);
           break;
         case 5: flow.on_quiet(); break;
+        case 6:
+          if (!out) break;
+          for (const Box& late : flow.on_begun(out->ticket))
+            if (out->changed) out->changed->push_back(late);
+          in_out = unseen;
+          break;
         default: break;
       }
       start();
