@@ -305,6 +305,8 @@ void Renderer::draw(FrameRequest request, Done<SharedFrame> done, LateChanges la
   impl_->thread.wake();
 }
 
+void Renderer::view_acts(ViewHandle view) { impl_->frames.view_acts(view); }
+
 void Renderer::on_context_lost(std::function<void()> callback) {
   std::lock_guard lock(impl_->lost_callback_mutex);
   impl_->lost_callback = std::move(callback);

@@ -248,6 +248,9 @@ class Renderer {
   // is not called for a refinement, or if the request fails before its turn.
   using LateChanges = std::function<std::vector<FrameRequest::Box>()>;
   void draw(FrameRequest request, Done<SharedFrame> done, LateChanges late_changes = {});
+  // The user of the view begins to act. A waiting request of the view no longer waits among the
+  // onlookers (FrameRequest::acting).
+  void view_acts(ViewHandle view);
 
   // Blocks until all earlier requests, except frames, are complete.
   void finish();

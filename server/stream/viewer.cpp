@@ -91,6 +91,7 @@ struct Viewer::Impl {
   Clock::time_point last_act{};     // when the newest camera or edit arrived
   Clock::time_point rests_at{};     // time of the refinement if nothing changes before
   bool quiet_timer_runs = false, rest_timer_runs = false;
+  bool waits_as_onlooker = false;  // the requested draw has the turn of an onlooker
   std::chrono::milliseconds retry_in = kFirstRetry;
   Stats stats;
 };
@@ -232,6 +233,7 @@ void Viewer::set_camera(std::uint64_t camera_seq, const Camera& camera, bool mov
     impl_->last_camera = impl_->last_act = Clock::now();
     impl_->rest_after(kRestAfterCamera);
   }
+  leave_onlookers();
   if (moving) wait_for_quiet();
   step();
   wait_for_rest();
@@ -281,8 +283,23 @@ bool Viewer::waits_until(std::chrono::steady_clock::time_point time, bool Impl::
 }
 
 void Viewer::acts() {
-  std::lock_guard lock(impl_->mutex);
-  impl_->last_act = Clock::now();
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->last_act = Clock::now();
+  }
+  leave_onlookers();
+}
+
+// A view has one request at a time. If it waits among many onlookers, the first picture of the
+// user's own stroke or camera would wait for all of them.
+void Viewer::leave_onlookers() {
+  render::ViewHandle view = 0;
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed || !impl_->waits_as_onlooker) return;
+    view = impl_->view;
+  }
+  impl_->context.renderer->view_acts(view);
 }
 
 void Viewer::set_style(render::ViewStyle style, std::optional<std::int64_t> past) {
@@ -374,6 +391,7 @@ void Viewer::step() {
     request.model = impl_->model;
     request.style = impl_->style;
     request.acting = Clock::now() - impl_->last_act < kActsFor;
+    impl_->waits_as_onlooker = !request.acting;
     request.moving = draw.quality == FlowControl::Quality::moving;
     request.samples = draw.samples;
     request.smooth = true;
@@ -408,6 +426,7 @@ void Viewer::step() {
 
 std::vector<render::FrameRequest::Box> Viewer::late_changes(std::uint64_t ticket) {
   std::lock_guard lock(impl_->mutex);
+  impl_->waits_as_onlooker = false;
   return impl_->flow.on_begun(ticket);
 }
 

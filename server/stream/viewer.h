@@ -91,6 +91,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void tell(const Error& why);
   void encode_next();
   void on_encoded(const Jpegs& jpegs, double encode_ms);
+  void leave_onlookers();
   void wait_for_quiet();
   void wait_for_rest();
   bool waits_until(std::chrono::steady_clock::time_point time, bool Impl::*timer_runs,

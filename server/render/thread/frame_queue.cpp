@@ -258,6 +258,17 @@ std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> 
   return std::nullopt;
 }
 
+void FrameQueue::view_acts(ViewHandle view) {
+  std::lock_guard lock(mutex_);
+  const auto found = views_.find(view);
+  if (found == views_.end() || !found->second.waits || found->second.acting) return;
+  const Place place = *found->second.waits;
+  remove_turn(place);
+  enter_half(found->second, true, true);
+  place->task.request.acting = true;
+  sort(place);
+}
+
 void FrameQueue::finished(const FrameTask& task, double took_ms) {
   std::lock_guard lock(mutex_);
   const auto rests = [&](ViewHandle view, double served_ms) {

@@ -73,6 +73,8 @@ class FrameQueue {
   // may precede whole frames in progress. If only bands of large images are in progress, it also
   // returns smaller whole frames.
   std::optional<FrameTask> take_part(std::span<const FrameTask::Turn> under_way);
+  // The user of this view acts now. A waiting request of the view gets the turn of an acting user.
+  void view_acts(ViewHandle view);
   void finished(const FrameTask& task, double took_ms);
   void forget(ViewHandle view);       // called when the view is removed
   std::vector<FrameTask> take_all();  // also forgets the frames in progress and all views

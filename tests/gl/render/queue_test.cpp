@@ -383,6 +383,26 @@ TEST_F(FrameTurns, five_hundred_onlookers_take_turns_in_the_order_of_their_waiti
     ASSERT_EQ(order[i], i % kOnlookers + 1) << "turn " << i;
 }
 
+TEST_F(FrameTurns, an_onlooker_who_begins_to_act_leaves_the_other_onlookers) {
+  FrameQueue queue(64);
+  for (ViewHandle view = 1; view <= 20; ++view) push(queue, part(view));
+  draw(queue, 10);
+  queue.view_acts(20);
+  EXPECT_EQ(draw(queue, 10), 20u) << "it waited among the onlookers";
+  EXPECT_EQ(draw(queue, 10), 2u);
+  queue.view_acts(20);  // nothing of this view waits
+  queue.view_acts(99);  // unknown
+  EXPECT_EQ(draw(queue, 10), 3u);
+  // A shared frame has the turn of its acting requester.
+  push(queue, shared(part(30)));
+  push(queue, shared(part(31)));
+  queue.view_acts(31);
+  const auto task = queue.take();
+  ASSERT_TRUE(task);
+  EXPECT_TRUE(task->turn.acting);
+  EXPECT_EQ(task->askers.size(), 2u);
+}
+
 TEST_F(FrameTurns, a_frame_that_begins_shows_what_changed_while_it_waited) {
   FrameQueue queue(8);
   int asked = 0;
