@@ -55,10 +55,17 @@ ShadeInput::Patterns patterns_of(const FrameRequest& request, const Camera& came
 
 }  // namespace
 
+// Returns the view, or the buffers that are used instead of those of the view. A frame with several
+// samples uses the view only once, to get its model.
+Result<View*> FrameJob::buffers(GpuScene& scene) const {
+  if (sample_view_) return sample_view_.get();
+  if (shared_view_) return shared_view_.get();
+  return scene.view(task_.request.view);
+}
+
 Step FrameJob::step(GpuScene& scene) {
   const auto begin = std::chrono::steady_clock::now();
-  // A frame with several samples uses the view only once, to get its model.
-  auto view = sample_view_ ? Result<View*>(sample_view_.get()) : scene.view(task_.request.view);
+  auto view = buffers(scene);
   const auto refuse = [&](const Error& problem) {
     release_view(scene, false);
     abort(problem);
@@ -109,6 +116,7 @@ Step FrameJob::step(GpuScene& scene) {
   if (!step) return refuse(step.error());
   busy_ms_ += ms_since(begin);
   if (*step == Step::done) {
+    frame_.level = (*view)->key.level;
     release_view(scene, true);
     if (scene.lost())
       return refuse(
@@ -118,8 +126,7 @@ Step FrameJob::step(GpuScene& scene) {
            {}});
     pixels_ = {};
     frame_.render_ms = busy_ms_;
-    frame_.level = (*view)->key.level;
-    if (progress_.cleared && !scene.info().software && !mean_)
+    if (progress_.cleared && !scene.info().software && !mean_ && part_.width == 0)
       scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
     if (samples_begin_)
       scene.detail_budget().smoothed(
@@ -131,11 +138,13 @@ Step FrameJob::step(GpuScene& scene) {
 }
 
 // An incomplete picture must not be updated in parts.
-void FrameJob::release_view(GpuScene& scene, bool is_complete) const {
+void FrameJob::release_view(GpuScene& scene, bool is_complete) {
+  if (shared_view_) return scene.return_shared_buffers(std::move(shared_view_));
   const auto view = scene.view(task_.request.view);
   if (!view || is_separate()) return;
   (*view)->drawing = false;
   (*view)->picture_complete = (*view)->picture_complete && is_complete;
+  (*view)->returned = (*view)->picture_complete;
 }
 
 Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
@@ -191,6 +200,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   camera_ = request.camera;
   if (is_separate()) return start_samples(scene, view.model);
   auto key = depth_key(view.model, request.camera, request.width, request.height);
+  if (is_part_of_last(view, key)) return start_part(scene, view, key);
   view.drawing = true;
   const auto has_gbuffer = [&](const DepthKey& needed) {
     return view.gbuffer_complete && view.key == needed && view.images == request.style.images &&
@@ -205,7 +215,58 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   if (has_gbuffer(key)) return {};
   view.images = request.style.images;
   view.lighting = request.style.light;
+  if (!view.has_buffers()) scene.limit_buffers(request.width, request.height);
   return prepare_gbuffer(view, key, scene.depths(), scene.memory());
+}
+
+// Returns whether the requester has the last frame of a view without buffers, and needs only the
+// changed parts.
+bool FrameJob::is_part_of_last(const View& view, const DepthKey& key) const {
+  const FrameRequest& request = task_.request;
+  DepthKey last = view.key;
+  if (request.moving) last.level = 0;  // any level drawn for this camera is good enough
+  return request.changed && !view.has_buffers() && view.returned && last == key &&
+         view.images == request.style.images && view.lighting == request.style.light &&
+         view.has_style(request);
+}
+
+Result<void> FrameJob::start_part(GpuScene& scene, const View& view, const DepthKey& key) {
+  const FrameRequest& request = task_.request;
+  auto model = STRATA_TRY(scene.model(view.model));
+  const auto rects = changed_rects(model->mesh().geometry(), view);
+  auto shared = scene.take_shared_buffers(request.width, request.height);
+  shared->model = view.model;
+  shared->images = view.images;
+  shared->lighting = view.lighting;
+  DepthKey of_part = key;
+  of_part.level = view.key.level;
+  STRATA_TRY(prepare_gbuffer(*shared, of_part, scene.depths(), scene.memory()));
+  shared_view_ = std::move(shared);
+  if (rects.empty()) {
+    shared_view_->gbuffer_complete = true;  // nothing is drawn
+    return {};
+  }
+  part_ = rects.front();
+  for (const PixelRect& rect : rects) part_ = around(part_, rect);
+  return {};
+}
+
+std::vector<PixelRect> FrameJob::changed_rects(const mesh::Geometry& geometry,
+                                               const View& view) const {
+  const FrameRequest& request = task_.request;
+  const glm::dmat4 clip =
+      camera_.projection * camera_.view * glm::translate(glm::dmat4(1.0), geometry.origin);
+  const auto features = static_cast<std::int64_t>(view.seen_features.count);
+  return screen_rects(*request.changed, clip, request.width, request.height, request.align_to_16,
+                      kRectCost_px + features * kFeatureCost_px,
+                      static_cast<double>(request.width) / request.camera.width);
+}
+
+// Returns the tested marks, which are never in the shared buffers.
+Result<const FeatureBuffer*> FrameJob::features(GpuScene& scene, const View& view) const {
+  if (!shared_view_) return &view.seen_features;
+  auto own = STRATA_TRY(scene.view(task_.request.view));
+  return &own->seen_features;
 }
 
 // Uses separate buffers. The view keeps its frame and g-buffer, to which later edits add
@@ -333,10 +394,13 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
     mesh_look.uniforms.look_opacity[static_cast<glm::length_t>(i)] =
         std::clamp(view.images[i].opacity, 0.0f, 1.0f);
   }
-  auto complete = scene.gbuffer_pass().draw_slice(mesh, mesh_look,
-                                                  {view.gbuffer, view.depth->texture}, progress_);
+  MeshTarget target{view.gbuffer, view.depth->texture, {}};
+  if (shared_view_) target.part = part_;
+  auto complete = scene.gbuffer_pass().draw_slice(mesh, mesh_look, target, progress_);
   if (!complete || !*complete) return complete;
-  view.gbuffer_complete = view.depth->complete = true;
+  view.gbuffer_complete = true;
+  if (shared_view_) return true;  // the depth outside the part is undefined
+  view.depth->complete = true;
   // A software renderer draws during the calls. A GPU finishes later, when the frame can be read.
   if (scene.info().software && &view != sample_view_.get())
     scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
@@ -351,11 +415,9 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
       camera_.projection * camera_.view * glm::translate(glm::dmat4(1.0), geometry.origin);
   frame_.width = request.width;
   frame_.height = request.height;
-  if (request.changed && !sample_view_ && view.shows(request)) {
-    const auto features = static_cast<std::int64_t>(view.seen_features.count);
-    frame_.rects = screen_rects(*request.changed, clip, request.width, request.height,
-                                request.align_to_16, kRectCost_px + features * kFeatureCost_px,
-                                static_cast<double>(request.width) / request.camera.width);
+  if (shared_view_ || (request.changed && !sample_view_ && view.shows(request))) {
+    auto own = STRATA_TRY(scene.view(request.view));
+    frame_.rects = changed_rects(geometry, *own);
     if (frame_.rects.empty()) return {};
   } else {
     frame_.rects = {{0, 0, request.width, request.height}};
@@ -420,14 +482,16 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
     STRATA_TRY(scene.contact_shadow_pass().draw(
         request.style.contact_shadow, camera_, model->mesh().geometry().origin, view.shading,
         request.width, request.height, intersection(band, shadow_)));
-  auto marked = scene.feature_pass().draw(view.seen_features, view.shading, request.width,
-                                          request.height, band);
+  const auto* seen_features = STRATA_TRY(features(scene, view));
+  auto marked =
+      scene.feature_pass().draw(*seen_features, view.shading, request.width, request.height, band);
   if (!marked) return tl::unexpected(marked.error());
 
   mean_ ? advance(shaded_, band.height) : read_band(view.picture, band);
   if (!complete(shaded_)) return false;
   if (&view == sample_view_.get()) return true;
   if (!mean_) pixels_.submit();
+  if (&view == shared_view_.get()) return true;
   view.picture_complete = true;
   view.layers = request.style.layers;
   view.background = request.style.background;

@@ -14,7 +14,8 @@ namespace strata::render {
 // One frame, drawn by one view. If the camera changed, the g-buffer is drawn in slices. Then the
 // changed parts are shaded and read back in bands. A frame with several samples repeats drawing and
 // shading for each sample, in separate buffers, and reads back the mean. A frame with smooth edges
-// is the mean of the view's frame and of such samples.
+// is the mean of the view's frame and of such samples. If the view has lost its buffers, a partial
+// frame draws the mesh only in the part around its rectangles, in buffers that views share.
 class FrameJob {
  public:
   explicit FrameJob(FrameTask task) : task_(std::move(task)) {}
@@ -36,7 +37,12 @@ class FrameJob {
   enum class Stage { prepare, layers, gbuffer, area, shade, mean, readback };
   // The picture has its own buffers, so the view's frame stays unchanged.
   bool is_separate() const { return task_.request.samples > 1; }
-  void release_view(GpuScene& scene, bool is_complete) const;
+  Result<View*> buffers(GpuScene& scene) const;
+  bool is_part_of_last(const View& view, const DepthKey& key) const;
+  Result<void> start_part(GpuScene& scene, const View& view, const DepthKey& key);
+  std::vector<PixelRect> changed_rects(const mesh::Geometry& geometry, const View& view) const;
+  Result<const FeatureBuffer*> features(GpuScene& scene, const View& view) const;
+  void release_view(GpuScene& scene, bool is_complete);
   Result<void> start_samples(GpuScene& scene, ModelHandle model);
   void make_smooth(GpuScene& scene, const View& view);
   bool has_layers(GpuScene& scene) const;  // true if all layers are on the GPU
@@ -65,6 +71,9 @@ class FrameJob {
 
   FrameTask task_;
   Camera camera_;  // camera of the frame, or of the current sample
+  // The buffers of a partial frame whose view has none, and the part in which the mesh is drawn.
+  std::unique_ptr<View> shared_view_;
+  PixelRect part_;
   // The state of a frame with several samples.
   std::unique_ptr<View> sample_view_;
   std::optional<Accumulation> mean_;

@@ -11,6 +11,9 @@ namespace {
 constexpr std::size_t kTrianglesPerSliceSoftware = 32 * 1024;
 constexpr std::size_t kTrianglesPerSliceHardware = 2 * 1024 * 1024;
 constexpr int kLowestResolution = kTileSize, kMaxResolution = 16384;
+// Partial frames of views without buffers. One is drawn while another is read back.
+constexpr std::size_t kMaxSharedBuffers = 2;
+constexpr std::uint64_t kShareOfViews = 4, kLeastViews = 8;
 constexpr std::uint64_t kDefaultBudget = std::uint64_t{4} << 30;
 
 std::string text(GLenum name) {
@@ -103,21 +106,65 @@ Result<void> GpuScene::load() {
 }
 
 // Evicts the first of these that exists: pages that no layer uses; depth buffers of cameras that no
-// view has; the least recently used layer; the buffers of the least recently used view.
+// view has; shared buffers; the least recently used layer; the buffers of the least recently used
+// view.
 bool GpuScene::evict_one() {
   for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_}) {
     if (pool->drop_empty_chunk()) return true;
   }
   if (depths_ && depths_->evict_one()) return true;
-  if (let_a_layer_leave()) return true;
-  View* oldest = nullptr;
-  for (auto& [handle, view] : views_) {
-    if (view.has_buffers() && !view.drawing && (!oldest || view.last_used < oldest->last_used))
-      oldest = &view;
+  if (!shared_buffers_.empty()) {
+    shared_buffers_.pop_back();
+    return true;
   }
+  if (let_a_layer_leave()) return true;
+  View* const oldest = least_recent_view();
   if (!oldest) return false;
   oldest->drop_buffers();
   return true;
+}
+
+std::unique_ptr<View> GpuScene::take_shared_buffers(int width, int height) {
+  const auto same =
+      std::ranges::find_if(shared_buffers_, [&](const std::unique_ptr<View>& buffers) {
+        return buffers->key.width == width && buffers->key.height == height;
+      });
+  if (same == shared_buffers_.end()) return std::make_unique<View>();
+  auto taken = std::move(*same);
+  shared_buffers_.erase(same);
+  return taken;
+}
+
+void GpuScene::return_shared_buffers(std::unique_ptr<View> buffers) {
+  if (!buffers->has_buffers()) return;
+  shared_buffers_.insert(shared_buffers_.begin(), std::move(buffers));
+  if (shared_buffers_.size() > kMaxSharedBuffers) shared_buffers_.pop_back();
+}
+
+void GpuScene::limit_buffers(int width, int height) {
+  const auto bytes_of = [](const View& view) {
+    return View::bytes_of_buffers(view.key.width, view.key.height);
+  };
+  const std::uint64_t bytes = View::bytes_of_buffers(width, height);
+  const std::uint64_t limit = std::max(memory_.budget() / kShareOfViews, kLeastViews * bytes);
+  std::uint64_t used = bytes;
+  for (const auto& [handle, view] : views_)
+    if (view.has_buffers()) used += bytes_of(view);
+  while (used > limit) {
+    View* const oldest = least_recent_view();
+    if (!oldest) return;
+    used -= bytes_of(*oldest);
+    oldest->drop_buffers();
+  }
+}
+
+// Returns the least recently used view with buffers that can be freed, or null.
+View* GpuScene::least_recent_view() {
+  View* oldest = nullptr;
+  for (auto& [handle, view] : views_)
+    if (view.has_buffers() && !view.drawing && (!oldest || view.last_used < oldest->last_used))
+      oldest = &view;
+  return oldest;
 }
 
 bool GpuScene::let_a_layer_leave(const PagePool* pool) {

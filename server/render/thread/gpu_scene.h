@@ -69,6 +69,15 @@ class GpuScene {
   }
   std::uint64_t next_use() { return ++uses_; }
 
+  // Buffers for the partial frame of a view that has none. They have any size and content. Return
+  // them after the frame.
+  std::unique_ptr<View> take_shared_buffers(int width, int height);
+  void return_shared_buffers(std::unique_ptr<View> buffers);
+  // Makes room for the buffers of one more view. The buffers of views take at most a quarter of the
+  // memory budget, or the memory of eight views of this size. Beyond that, the least recently used
+  // ones are freed, because drawing a rectangle without them takes only a little longer.
+  void limit_buffers(int width, int height);
+
   ModelHandle add(Model model);
   SurfaceImageHandle add(SurfaceImage image);
   // `mirror` may be null (see GpuLayer).
@@ -93,6 +102,7 @@ class GpuScene {
   GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory);
   Result<void> load();
   bool evict_one();
+  View* least_recent_view();
   // Evicts the least recently used layer. If `pool` is given, evicts a layer of this pool.
   bool let_a_layer_leave(const PagePool* pool = nullptr);
   std::uint64_t next_handle() { return generation_ << 40 | ++handles_; }
@@ -120,6 +130,7 @@ class GpuScene {
   std::unordered_map<ModelHandle, Model> models_;
   std::unordered_map<LayerHandle, GpuLayer> layers_;
   std::unordered_map<ViewHandle, View> views_;
+  std::vector<std::unique_ptr<View>> shared_buffers_;
   std::unordered_map<SurfaceImageHandle, SurfaceImage> images_;
 };
 

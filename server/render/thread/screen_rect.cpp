@@ -18,12 +18,6 @@ double padding_px(double pixel_scale) {
 constexpr int kAlign = 16;
 std::int64_t area(const PixelRect& rect) { return std::int64_t{rect.width} * rect.height; }
 
-PixelRect around(const PixelRect& a, const PixelRect& b) {
-  const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
-  return {x, y, std::max(a.x + a.width, b.x + b.width) - x,
-          std::max(a.y + a.height, b.y + b.height) - y};
-}
-
 // Returns the additional pixels of one rectangle around both. Negative if they overlap.
 std::int64_t growth(const PixelRect& a, const PixelRect& b) {
   return area(around(a, b)) - area(a) - area(b);
@@ -131,6 +125,12 @@ void add_box(std::vector<FrameRequest::Box>& boxes, const FrameRequest::Box& box
     return growth(a) < growth(b);
   });
   nearest = grown(nearest);
+}
+
+PixelRect around(const PixelRect& a, const PixelRect& b) {
+  const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x,
+          std::max(a.y + a.height, b.y + b.height) - y};
 }
 
 PixelRect intersection(const PixelRect& a, const PixelRect& b) {

@@ -40,6 +40,9 @@ constexpr std::size_t rgba_bytes(const PixelRect& rect) {
          static_cast<std::size_t>(rect.height);
 }
 
+// Returns the smallest rectangle that contains both.
+PixelRect around(const PixelRect& a, const PixelRect& b);
+
 // Returns an empty rectangle (all zero) if they do not intersect.
 PixelRect intersection(const PixelRect& a, const PixelRect& b);
 

@@ -4,6 +4,12 @@
 
 namespace strata::render {
 
+std::uint64_t View::bytes_of_buffers(int width, int height) {
+  constexpr std::uint64_t kBytesPerPixel = 16;  // texture coordinates, light, frame, depth
+  return kBytesPerPixel * static_cast<unsigned>(width) * static_cast<unsigned>(height);
+}
+
+// Keeps `seen_features`, which is small and which partial frames need.
 void View::drop_buffers() {
   gbuffer = {};
   shading = {};
@@ -12,20 +18,18 @@ void View::drop_buffers() {
   picture = {};
   depth.reset();
   share.reset();
-  seen_features = {};
   gbuffer_complete = picture_complete = false;
 }
 
-bool View::shows(const FrameRequest& request) const {
-  return picture_complete && unit_mm == request.style.unit_mm &&
-         background == request.style.background && background_rows == request.background_rows &&
-         layers == request.style.layers && features == request.style.features &&
-         contact_shadow == request.style.contact_shadow;
+bool View::has_style(const FrameRequest& request) const {
+  return unit_mm == request.style.unit_mm && background == request.style.background &&
+         background_rows == request.background_rows && layers == request.style.layers &&
+         features == request.style.features && contact_shadow == request.style.contact_shadow;
 }
 
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths,
                              GpuMemory& memory) {
-  view.gbuffer_complete = view.picture_complete = false;
+  view.gbuffer_complete = view.picture_complete = view.returned = false;
   if (view.has_buffers() &&
       (view.picture.width() != key.width || view.picture.height() != key.height))
     view.drop_buffers();

@@ -9,7 +9,9 @@
 namespace strata::render {
 
 // The state of a view between frames: the g-buffer of its camera and its last frame, which partial
-// frames update. A view without buffers is new or was evicted.
+// frames update. A view without buffers is new or was evicted. An evicted view keeps the
+// description of its last frame, so later partial frames are drawn into buffers that all such views
+// share (GpuScene::take_shared_buffers).
 struct View {
   ModelHandle model = 0;
   bool drawing = false;  // a frame is in progress, so it must not be evicted
@@ -26,6 +28,9 @@ struct View {
   GpuMemory::Share share;
 
   bool picture_complete = false;
+  // The requester has the frame that the members below and `key` describe, except for later changes
+  // on the surface.
+  bool returned = false;
   std::vector<LayerStyle> layers;  // layers in `picture`
   Background background;
   glm::vec2 background_rows{0, 1};
@@ -35,9 +40,11 @@ struct View {
   FeatureBuffer seen_features;  // the marks, tested with the g-buffer's camera
 
   bool has_buffers() const { return static_cast<bool>(picture); }
+  static std::uint64_t bytes_of_buffers(int width, int height);
   void drop_buffers();
+  bool has_style(const FrameRequest& request) const;
   // Returns whether `picture` shows this request, except for changes on the surface.
-  bool shows(const FrameRequest& request) const;
+  bool shows(const FrameRequest& request) const { return picture_complete && has_style(request); }
 };
 
 // Prepares the buffers of `view` for the size and the camera of `key`. If an edit uses the depth

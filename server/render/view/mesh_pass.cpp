@@ -36,6 +36,43 @@ std::size_t next_culling(const MeshProgress& progress) {
   return rest < kFewClusters ? progress.clusters : progress.next_cluster + rest / kCullAfter;
 }
 
+// Limits clears and draws to the part of the target, until the end of the scope.
+class PartScope {
+ public:
+  explicit PartScope(const MeshTarget& target) : is_limited_(target.part.has_value()) {
+    if (!is_limited_) return;
+    const PixelRect& part = *target.part;
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(part.x, target.depth.height() - part.y - part.height, part.width, part.height);
+  }
+  ~PartScope() {
+    if (is_limited_) glDisable(GL_SCISSOR_TEST);
+  }
+  PartScope(const PartScope&) = delete;
+  PartScope& operator=(const PartScope&) = delete;
+
+ private:
+  const bool is_limited_;
+};
+
+// Returns the transformation after which the clip volume is that of the target's part, with one
+// more pixel on each side.
+glm::mat4 clip_of_part(const glm::mat4& clip_from_model, const MeshTarget& target) {
+  if (!target.part) return clip_from_model;
+  const glm::dvec2 size(target.depth.width(), target.depth.height());
+  const PixelRect& part = *target.part;
+  const glm::dvec2 low(part.x - 1, size.y - part.y - part.height - 1);
+  const glm::dvec2 half(part.width / 2.0 + 1, part.height / 2.0 + 1);
+  const glm::dvec2 scale = size / (2.0 * half);
+  const glm::dvec2 center = (low + half) / size * 2.0 - 1.0;
+  glm::dmat4 crop(1);
+  crop[0][0] = scale.x;
+  crop[1][1] = scale.y;
+  crop[3][0] = -center.x * scale.x;
+  crop[3][1] = -center.y * scale.y;
+  return glm::mat4(crop * glm::dmat4(clip_from_model));
+}
+
 }  // namespace
 
 Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader_dir,
@@ -74,6 +111,7 @@ Result<const gl::Program*> MeshPass::program(const MeshView& view, bool lit_at_v
 Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view,
                              const MeshTarget& target, MeshProgress& progress) {
   const GLuint framebuffer = target.framebuffer.id();
+  const PartScope scope(target);
   const float farthest = 1;
   glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &farthest);
   if (kind_ == Kind::gbuffer) {
@@ -83,8 +121,8 @@ Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view,
     glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, dark.data());
   }
   std::vector<shader::DrawCommand> commands;
-  for (const auto cluster :
-       mesh.visible_clusters(view.uniforms.clip_from_model, view.uniforms.eye)) {
+  for (const auto cluster : mesh.visible_clusters(
+           clip_of_part(view.uniforms.clip_from_model, target), view.uniforms.eye)) {
     constexpr std::size_t kTriangles = mesh::Geometry::kTrianglesPerCluster;
     const std::size_t first = cluster * kTriangles;
     const auto count =
@@ -126,6 +164,7 @@ Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
   mesh.vertex_array().bind();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer.id());
   glViewport(0, 0, target.depth.width(), target.depth.height());
+  const PartScope scope(target);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDisable(GL_CULL_FACE);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "render/memory/mesh_buffers.h"
+#include "render/renderer.h"
 #include "render/view/cluster_culler.h"
 #include "shared/mesh.h"
 
@@ -38,6 +40,9 @@ MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& 
 struct MeshTarget {
   const gl::Framebuffer& framebuffer;
   const gl::Texture& depth;
+  // The only part of the frame that is cleared and drawn. Its pixels are the same as in a drawing
+  // of the whole frame. No value: the whole frame.
+  std::optional<PixelRect> part{};
 };
 
 // The progress of drawing a mesh in slices.

@@ -539,6 +539,53 @@ TEST_F(Shade, views_give_their_buffers_up_when_memory_runs_out_and_draw_again) {
   }
 }
 
+TEST_F(Shade, rectangles_of_views_that_gave_their_buffers_up_equal_a_full_redraw) {
+  constexpr int kWidth = 640, kHeight = 480, kViews = 12;
+  constexpr std::uint64_t kBytes = std::uint64_t{16} * kWidth * kHeight;  // buffers of one view
+  render::RendererOptions options;
+  options.gpu_memory_bytes = 160u << 20;  // a quarter is less than the memory of eight views
+  TestRenderer renderer(options);
+  const auto model = renderer.add(make_scene(bumpy_sphere(30), 512));
+  const auto layer = renderer.add_layer(model, ValueType::u8, 512);
+  std::vector<render::FrameRequest> requests(kViews);
+  for (int i = 0; i < kViews; ++i) {
+    auto& request = requests[static_cast<std::size_t>(i)];
+    request.view = renderer.add_view(model);
+    request.camera = perspective_camera({1.2 + 0.02 * i, 1.0, 2.4}, {0, 0, 0}, kWidth, kHeight);
+    request.width = kWidth, request.height = kHeight;
+    request.style.layers = {
+        {layer, std::make_shared<const Palette>(default_palette(ValueType::u8, false)), 0.8f}};
+  }
+  renderer.paint(layer, dab(requests.back().camera, 300, 200, 40, 30));
+  const auto without_views = renderer->gpu_bytes_used();
+  std::vector<render::Frame> pictures;
+  for (const auto& request : requests) pictures.push_back(renderer.draw(request));
+  EXPECT_LE(renderer->gpu_bytes_used(), without_views + 8 * kBytes);
+
+  std::vector<render::FrameRequest::Box> changed;
+  for (const glm::dvec2 at : {glm::dvec2(260, 180), {400, 300}}) {
+    const auto outcome = renderer.paint(layer, dab(requests.back().camera, at.x, at.y, 12, 90));
+    changed.push_back({outcome.written_min, outcome.written_max});
+  }
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    auto request = requests[i];
+    request.changed = changed;
+    const auto part = renderer.draw(request);
+    ASSERT_FALSE(part.rects.empty());
+    for (const auto& rect : part.rects) EXPECT_LT(rect.width * rect.height, kWidth * kHeight / 8);
+    put(pictures[i], part);
+  }
+  // The views without buffers share theirs.
+  EXPECT_LE(renderer->gpu_bytes_used(), without_views + 10 * kBytes);
+  // With another style, the whole frame is drawn.
+  auto other = requests.front();
+  other.changed = changed;
+  other.style.layers[0].opacity = 0.5f;
+  EXPECT_EQ(renderer.draw(other).rects.at(0), (render::PixelRect{0, 0, kWidth, kHeight}));
+  for (std::size_t i = 0; i < requests.size(); ++i)
+    EXPECT_EQ(pictures[i].pixels, renderer.draw(requests[i]).pixels) << "view " << i;
+}
+
 TEST_F(Shade, requests_that_cannot_be_drawn_are_refused_with_a_reason) {
   const auto refused = [&](const render::FrameRequest& request, ErrorCode code) {
     const auto result =
