@@ -185,6 +185,7 @@ void OpenParticipant::ack(std::uint32_t view_id, std::uint64_t frame) {
 }
 
 void OpenParticipant::edits() {
+  has_edited_ = true;
   std::lock_guard lock(mutex_);
   for (auto& [id, view] : views_) view.viewer->acts();
 }
@@ -213,18 +214,16 @@ Presence OpenParticipant::presence() const {
           pointer_, leading_,  std::nullopt,        camera_};
 }
 
-void OpenParticipant::content_changed(LayerId layer_id,
+void OpenParticipant::content_changed(const Layer& layer,
                                       const std::optional<render::FrameRequest::Box>& box,
                                       std::int64_t sequence) {
-  const auto state = room_->layer_state(layer_id);
-  if (state && !sees(role(), state->layer.visibility)) return;
+  if (!sees(role(), layer.visibility)) return;
   std::lock_guard lock(mutex_);
   for (auto& [id, view] : views_) {
     if (view.at) continue;
-    auto own = view.overrides.find(layer_id);
-    const bool shown = own != view.overrides.end() && own->second.visible
-                           ? *own->second.visible
-                           : state && state->layer.visible;
+    auto own = view.overrides.find(layer.id);
+    const bool shown =
+        own != view.overrides.end() && own->second.visible ? *own->second.visible : layer.visible;
     if (!shown) continue;
     box ? view.viewer->changed(*box, sequence) : view.viewer->changed_everywhere(sequence);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -37,9 +38,10 @@ class OpenParticipant final : public Participant {
   Listener* listener() const { return listener_; }
   const std::string& user() const { return who_.user; }
   Role role() const { return who_.role; }  // determines the visible layers and columns
-  Presence presence() const;               // without `following`, which the room sets
+  bool has_edited() const { return has_edited_; }
+  Presence presence() const;  // without `following`, which the room sets
   // Called by the room.
-  void content_changed(LayerId layer_id, const std::optional<render::FrameRequest::Box>& box,
+  void content_changed(const Layer& layer, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence);
   void styles_changed();
   void model_changed(render::ModelHandle model);
@@ -90,6 +92,7 @@ class OpenParticipant final : public Participant {
   std::optional<Camera> camera_;  // camera of view 0 without its section
   bool leading_ = false;
   bool told_moved_ = false;
+  std::atomic<bool> has_edited_ = false;
 };
 
 }  // namespace strata::room

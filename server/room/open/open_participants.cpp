@@ -85,9 +85,18 @@ void OpenRoom::ParticipantsPart::tell_unsaved(const std::vector<Listener::Edit>&
 }
 
 void OpenRoom::ParticipantsPart::content_changed(
-    LayerId layer_id, const std::optional<render::FrameRequest::Box>& box, std::int64_t sequence) {
+    const Layer& layer, const std::optional<render::FrameRequest::Box>& box,
+    std::int64_t sequence) {
   std::lock_guard lock(mutex_);
-  for (OpenParticipant* each : here_) each->content_changed(layer_id, box, sequence);
+  // First the people who edit, so that the GPU does not begin a frame for somebody else before it
+  // knows of the author's.
+  std::vector<OpenParticipant*> onlookers;
+  for (OpenParticipant* each : here_)
+    if (each->has_edited())
+      each->content_changed(layer, box, sequence);
+    else
+      onlookers.push_back(each);
+  for (OpenParticipant* each : onlookers) each->content_changed(layer, box, sequence);
 }
 
 void OpenRoom::ParticipantsPart::styles_changed() {

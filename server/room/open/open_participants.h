@@ -45,7 +45,7 @@ class OpenRoom::ParticipantsPart final : public Participants {
   // longer see it. `before` is nullopt for a new layer.
   void tell_layer(std::optional<Visibility> before, const Layer& layer);
   void tell_unsaved(const std::vector<Listener::Edit>& edits, const Error& why);
-  void content_changed(LayerId layer_id, const std::optional<render::FrameRequest::Box>& box,
+  void content_changed(const Layer& layer, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence);
   void styles_changed();
   void model_changed(render::ModelHandle model);

@@ -287,7 +287,9 @@ std::uint64_t OpenRoom::mirror_bytes() const {
 void OpenRoom::content_changed(const LayerState& layer,
                                const std::optional<render::FrameRequest::Box>& box,
                                std::int64_t sequence) {
-  participants_part_->content_changed(layer.layer.id, box, sequence);
+  // First, because a new view reports this sequence with its first frame, which shows the change.
+  sequence_ = sequence;
+  participants_part_->content_changed(layer.layer, box, sequence);
 }
 
 void OpenRoom::styles_changed() { participants_part_->styles_changed(); }

@@ -450,24 +450,34 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   const std::int64_t sequence = ++sequence_;
   item.trace.painted = EditTrace::Clock::now();
 
-  store::JournalEntry entry;
   const bool is_provisional = waits_for_review(layer.layer, item.request);
-  EditAnswer answer{sequence, 0, 0, false, is_provisional};
   TileMap tiles, provisional_before, provisional;
-  auto& since_key_tile = since_key_tile_[layer.layer.id];
   for (TileChange& change : computed.changes) {
     if (is_provisional) change.provisional = change.written;
     if (auto marked = layer.provisional->tile(change.address); marked || change.provisional.any()) {
       provisional[change.address] = with_provisional(marked, change);
       provisional_before[change.address] = std::move(marked);
     }
+    if (change.before != change.after) tiles[change.address] = change.after;
+  }
+  const std::int64_t sequence_before = layer.layer.sequence;
+  layer.mirror->put(tiles, sequence);
+  put_provisional(layer, provisional, sequence);
+  host_->set_sequence(layer, sequence);
+  // The frames of the edit are requested before its texels are counted and compressed for the
+  // journal, so these milliseconds do not delay the pixels.
+  if (!tiles.empty() || !provisional.empty()) host_->content_changed(layer, box, sequence);
+
+  store::JournalEntry entry;
+  EditAnswer answer{sequence, 0, 0, false, is_provisional};
+  auto& since_key_tile = since_key_tile_[layer.layer.id];
+  for (const TileChange& change : computed.changes) {
     if (change.before == change.after) continue;  // no texel changes
     if (map) {
       const ChangeCount count = count_changes(change, *map);
       answer.texels_changed += count.texels;
       answer.area_m2 += count.area * model.metres() * model.metres();
     }
-    tiles[change.address] = change.after;
     store::JournalEntry::Revision revision{
         change.address,
         encode_revision(
@@ -489,10 +499,6 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
       return sum_tiles(about, *map, after);
     };
   }
-  const std::int64_t sequence_before = layer.layer.sequence;
-  layer.mirror->put(tiles, sequence);
-  put_provisional(layer, provisional, sequence);
-  host_->set_sequence(layer, sequence);
 
   const auto* stroke = std::get_if<StrokeEdit>(&item.request.edit);
   entry.model_id = model.id;
@@ -519,29 +525,34 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
                        entry.op,          answer};
   if (auto* review = std::get_if<ReviewEdit>(&item.request.edit))
     event.review = {review->decision, std::move(review->reason), std::move(computed.authors)};
-  if (!tiles.empty() || !provisional.empty()) host_->content_changed(layer, box, sequence);
-  host_->edit_applied(event);
   if (item.applied) item.applied(answer);
 
   pending_.push_back({event, std::move(computed.changes), std::move(provisional_before),
                       sequence_before, std::move(item.saved), item.trace, false});
   if (not_saving_) refuse_pending(*not_saving_);
+  submit(std::move(entry), pending_.back());
+  // The author and the journal do not wait for hundreds of messages to others.
+  host_->edit_applied(event);
+}
+
+// Passes a pending edit to the writer. After a failure, no edit is written before the rollback.
+void EditPipeline::submit(store::JournalEntry entry, Pending& pending) {
   if (failure_) {
-    pending_.back().answered = true;
+    pending.answered = true;
     return;
   }
-  pending_.back().trace.submitted = EditTrace::Clock::now();
+  pending.trace.submitted = EditTrace::Clock::now();
   const bool taken = parts_.writer.submit(
-      std::move(entry),
-      then([this, sequence](const Result<void>& result) { on_saved(sequence, result); }));
-  if (!taken) {
-    failure_ = Error{ErrorCode::unavailable,
-                     "Not saved",
-                     "The database is too slow for the edits, so the server undid them. Send edits "
-                     "more slowly.",
-                     {}};
-    pending_.back().answered = true;
-  }
+      std::move(entry), then([this, sequence = pending.event.sequence](const Result<void>& result) {
+        on_saved(sequence, result);
+      }));
+  if (taken) return;
+  failure_ = Error{ErrorCode::unavailable,
+                   "Not saved",
+                   "The database is too slow for the edits, so the server undid them. Send edits "
+                   "more slowly.",
+                   {}};
+  pending.answered = true;
 }
 
 void EditPipeline::refuse_pending(const Error& why) {

@@ -192,6 +192,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void refuse_pending(const Error& why);
   void commit(Waiting& item, LayerState& layer, ComputedEdit computed,
               const std::optional<render::FrameRequest::Box>& box);
+  void submit(store::JournalEntry entry, Pending& pending);
   // A null tile means that no texel of the tile waits for review.
   void put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence);
   void on_saved(std::int64_t sequence, const Result<void>& result);
