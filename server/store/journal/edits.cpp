@@ -27,6 +27,14 @@ constexpr auto kWithIds = sql(
     kStateColumns,
     "JOIN edit_batches b ON b.model_id = e.model_id AND b.edit = e.sequence WHERE b.model_id = $1 AND b.id = any($2)");
 
+// The state of model $1, and whether any of the ids $2 may be in its journal. Each edit waits for
+// this query before it is painted, and its id is almost always new.
+constexpr char kState[] =
+    "SELECT m.sequence, m.owner_epoch, "
+    "EXISTS (SELECT 1 FROM edits e WHERE e.model_id = m.id AND e.id = any($2)) "
+    "OR EXISTS (SELECT 1 FROM edit_batches b WHERE b.model_id = m.id AND b.id = any($2)) "
+    "FROM models m WHERE m.id = $1";
+
 JournalRow read_row(const PgResult& rows, int i) {
   PgRow columns(rows, i);
   JournalRow row{columns.integer(), columns.uuid(), columns.uuid(),
@@ -77,12 +85,11 @@ Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids)
   PgArray requested(oid::kUuid);
   for (const Uuid& id : ids) requested.add(id);
   return pool_.read([&](PgConnection& connection) -> Result<JournalState> {
-    auto model = connection.query("SELECT sequence, owner_epoch FROM models WHERE id = $1",
-                                  Params().id(model_id));
+    auto model = connection.query(kState, Params().id(model_id).array(requested));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return no_such("model", to_string(model_id));
     JournalState state{model->integer(0, 0), model->integer(0, 1), {}};
-    if (ids.empty()) return state;
+    if (!model->boolean(0, 2)) return state;
     auto rows = connection.query(kWithIds, Params().id(model_id).array(requested));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() > 0) STRATA_TRY(connection.confirm_visible());
