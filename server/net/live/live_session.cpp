@@ -527,7 +527,30 @@ void LiveSession::edit_applied(const Edit& edit) {
     reviewed.authors = edit.review->authors;
     if (!edit.review->reason.empty()) reviewed.reason = edit.review->reason;
   }
-  send(event);
+  const auto socket = socket_.lock();
+  std::optional<EditEvents::Clock::duration> delay;
+  {
+    std::lock_guard lock(mutex_);
+    if (edit.review || !socket) {  // each decision is a separate message
+      edit_events_.drop(edit.layer_id);
+      return send(event);
+    }
+    const bool are_few = people_sent_ <= shared_->limits.presence_people;
+    delay = edit_events_.add(event, are_few ? std::chrono::milliseconds(0) : presence_pause(),
+                             EditEvents::Clock::now());
+  }
+  if (!delay) return;
+  if (*delay <= EditEvents::Clock::duration{}) return send_edits();
+  socket->run_after(std::chrono::ceil<std::chrono::milliseconds>(*delay),
+                    [weak = weak_from_this()] {
+                      if (auto self = weak.lock()) self->send_edits();
+                    });
+}
+
+void LiveSession::send_edits() {
+  // Sends under the lock, so that a newer event of the layer cannot be sent first.
+  std::lock_guard lock(mutex_);
+  for (const auto& event : edit_events_.take(EditEvents::Clock::now())) send(event);
 }
 
 void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Error&) {
@@ -535,11 +558,13 @@ void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Error&) {
   std::map<LayerId, std::int64_t> sequences;
   for (const auto& edit : edits)
     sequences[edit.layer_id] = std::max(sequences[edit.layer_id], edit.sequence);
+  std::lock_guard lock(mutex_);
   for (const auto& [layer_id, sequence] : sequences) {
     protocol::LayerEvent event;
     event.event = protocol::LayerEventEvent::edited;
     event.layer_id = layer_id.number();
     event.sequence = sequence;
+    edit_events_.drop(layer_id);
     send(event);
   }
 }
@@ -549,6 +574,8 @@ void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
   event.layer_id = layer.id.number();
   event.event = named<protocol::LayerEventEvent>(change);
   if (change != LayerChange::deleted) event.layer = to_json(layer);
+  std::lock_guard lock(mutex_);
+  if (change != LayerChange::changed) edit_events_.drop(layer.id);
   send(event);
 }
 
@@ -594,11 +621,8 @@ void LiveSession::presence_changed() {
   {
     std::lock_guard lock(mutex_);
     if (std::exchange(presence_scheduled_, true)) return;
-    const LiveLimits& limits = shared_->limits;
     if (presence_sent_) {
-      const auto due = *presence_sent_ + limits.presence_every *
-                                             std::max(people_sent_, limits.presence_people) /
-                                             limits.presence_people;
+      const auto due = *presence_sent_ + presence_pause();
       delay = std::max(delay, std::chrono::ceil<std::chrono::milliseconds>(
                                   due - std::chrono::steady_clock::now()));
     }
@@ -606,6 +630,13 @@ void LiveSession::presence_changed() {
   socket->run_after(delay, [weak = weak_from_this()] {
     if (auto self = weak.lock()) self->send_presence();
   });
+}
+
+// Returns the time between two presence messages. Call with the lock.
+std::chrono::milliseconds LiveSession::presence_pause() const {
+  const LiveLimits& limits = shared_->limits;
+  return limits.presence_every * std::max(people_sent_, limits.presence_people) /
+         limits.presence_people;
 }
 
 void LiveSession::view_refused(std::uint32_t view_id, const Error& why) {

@@ -23,6 +23,7 @@
 #include "net/http/http_types.h"
 #include "net/http/token_bucket.h"
 #include "net/http/worker_pool.h"
+#include "net/live/edit_events.h"
 #include "net/live/live_limits.h"
 #include "protocol/messages.h"
 #include "protocol/parse.h"
@@ -147,7 +148,9 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   bool has_records(const protocol::LayerRef& ref) const;
   std::shared_ptr<room::Participant> member() const;
   void resolve_pointer();
+  std::chrono::milliseconds presence_pause() const;
   void send_presence();
+  void send_edits();
   void send(const protocol::ServerMessage& message);
   void refuse(const Error& problem, const std::string& ref);
   void refuse(const Error& problem, const Uuid& id) { refuse(problem, to_string(id)); }
@@ -173,6 +176,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   bool presence_scheduled_ = false;
   std::optional<std::chrono::steady_clock::time_point> presence_sent_;
   int people_sent_ = 0;  // number of users in the last presence message
+  EditEvents edit_events_;
   struct Pointer {
     Camera camera;
     glm::dvec2 pixel;

@@ -466,6 +466,57 @@ TEST_F(Live, others_hear_that_the_layer_was_edited_and_the_author_does_not) {
   EXPECT_EQ(socket->of("layer")[0]["user"], "bert");
 }
 
+TEST_F(Live, with_many_people_the_edits_of_a_layer_are_told_together) {
+  shared->limits.presence_every = std::chrono::hours(1);
+  hello();
+  room->participants_.people.resize(40, room->participants_.people[0]);
+  socket->later.front()();  // sends the presence, so the session knows of 40 people
+  socket->delays.clear();
+  std::int64_t sequence = 0;
+  const auto edit = [&](std::int64_t layer, bool provisional = false) {
+    room::Listener::Edit foreign;
+    foreign.layer_id = LayerId(layer);
+    foreign.id = random_uuid();
+    foreign.user = "bert";
+    foreign.sequence = ++sequence;
+    foreign.answer.provisional = provisional;
+    return foreign;
+  };
+  session->edit_applied(edit(7));
+  ASSERT_EQ(socket->of("layer").size(), 1u) << "the first one comes at once";
+  session->edit_applied(edit(7, true));
+  session->edit_applied(edit(8));
+  session->edit_applied(edit(7));
+  EXPECT_EQ(socket->of("layer").size(), 1u);
+  ASSERT_EQ(socket->delays.size(), 1u);
+  EXPECT_GT(socket->delays[0], std::chrono::hours(4)) << "as rarely as presence";
+  socket->later.back()();
+  auto told = socket->of("layer");
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_EQ(told[1]["layer_id"], 7);
+  EXPECT_EQ(told[1]["sequence"], 4);
+  EXPECT_EQ(told[1]["provisional"], true) << "one of the edits waits for review";
+  EXPECT_EQ(told[2]["layer_id"], 8);
+  EXPECT_EQ(told[2]["sequence"], 3);
+  // A decision of a curator is a message of its own, and nothing older follows it.
+  session->edit_applied(edit(7));
+  auto decision = edit(7);
+  decision.review.emplace();
+  session->edit_applied(decision);
+  told = socket->of("layer");
+  ASSERT_EQ(told.size(), 4u);
+  EXPECT_EQ(told[3]["sequence"], 6);
+  // The same holds if edits are rolled back.
+  session->edit_applied(edit(8));
+  auto unsaved = edit(8);
+  unsaved.sequence = 3;
+  session->edits_unsaved({unsaved}, {});
+  socket->later.back()();
+  told = socket->of("layer");
+  ASSERT_EQ(told.size(), 5u);
+  EXPECT_EQ(told[4]["sequence"], 3);
+}
+
 TEST_F(Live, bad_messages_name_the_field_and_the_connection_lives_on) {
   hello();
   json wrong = begin(stroke);

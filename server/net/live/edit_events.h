@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/ids.h"
+#include "protocol/messages.h"
+
+namespace strata::net {
+
+// The events of other people's edits that one session has not sent yet. If hundreds of people watch
+// a painter, one message for each edit and each person would take more processor time than the
+// frames. So the events of a layer that come within an interval become one event, with the newest
+// sequence. Not thread-safe.
+class EditEvents {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  // Adds an event. Returns the time until the caller must call `take`, or nothing if an earlier
+  // call of `add` has already returned such a time. The time is 0 if nothing was sent within the
+  // last `interval`.
+  std::optional<Clock::duration> add(const protocol::LayerEvent& event, Clock::duration interval,
+                                     Clock::time_point now);
+  // Returns the newest event of each layer. It has the user of the newest edit, and it is
+  // provisional if any of its edits is.
+  std::vector<protocol::LayerEvent> take(Clock::time_point now);
+  // Drops the events of a layer, because the caller sends a newer message about it.
+  void drop(LayerId layer) { waiting_.erase(layer.number()); }
+
+ private:
+  std::map<std::int64_t, protocol::LayerEvent> waiting_;  // by layer
+  bool is_due_ = false;                                   // the caller will call `take`
+  std::optional<Clock::time_point> taken_;
+};
+
+}  // namespace strata::net
