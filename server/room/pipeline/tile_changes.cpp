@@ -1,10 +1,12 @@
 #include "room/pipeline/tile_changes.h"
 
+#include <bit>
 #include <set>
 
 #include "domain/layers/mask_texels.h"
 #include "domain/layers/tile_difference.h"
 #include "mesh/texels/slot_bits.h"
+#include "query/conditions/texel_values.h"
 #include "query/statistics/surface_keys.h"
 
 namespace strata::room {
@@ -42,14 +44,22 @@ std::shared_ptr<const TileData> tile_or_empty(const TileMap& tiles, TileAddress 
 
 ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map) {
   ChangeCount count;
-  TileMask changed = differing(*change.before, *change.after);
+  const TileMask changed = differing(*change.before, *change.after);
   if (!changed.any()) return count;
-  const TileMask surface = map.surface_in_tile(change.address);
-  for (int w = 0; w < kMaskWords; ++w) changed.words[w] &= surface.words[w];
-  for_each_texel(changed, [&](int texel) {
-    ++count.texels;
-    count.area += map.area_of(change.address, texel);
-  });
+  constexpr int kBlocks = query::kBlocksPerTile;
+  for (int y = 0; y < kBlocks; ++y)
+    for (int x = 0; x < kBlocks; ++x) {
+      std::uint64_t rest = query::block_bits(changed, x, y);
+      if (rest == 0) continue;
+      const auto slot =
+          mesh::slot_at(map, change.address.x * kBlocks + x, change.address.y * kBlocks + y);
+      if (slot == mesh::kNoSlot) continue;
+      rest &= map.surface_mask[slot];
+      count.texels += static_cast<std::uint64_t>(std::popcount(rest));
+      for (; rest != 0; rest &= rest - 1)
+        count.area +=
+            map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(std::countr_zero(rest))];
+    }
   return count;
 }
 

@@ -13,6 +13,7 @@
 #include "query/sampling/texel_samples.h"
 #include "query/statistics/cross_table.h"
 #include "query/statistics/key_areas.h"
+#include "query/statistics/surface_keys.h"
 
 namespace strata::query {
 namespace {
@@ -91,6 +92,50 @@ std::vector<Sample> samples(const LayerView& view, const mesh::SurfaceMap& map) 
     }
   }
   return all;
+}
+
+TEST(QueryStatistics, keys_of_a_tile_agree_with_a_plain_sum_over_every_texel) {
+  const mesh::SurfaceMap map = make_map(256, 0.6, 5);
+  // Few and many keys, the bit pattern 0, and a layer whose values are not told apart.
+  for (const auto& [type, distinct] : {std::pair{ValueType::u8, 1},
+                                       {ValueType::u8, 3},
+                                       {ValueType::u8, 200},
+                                       {ValueType::f32, 9}}) {
+    SCOPED_TRACE(std::string(name(type)) + " with " + std::to_string(distinct) + " values");
+    const LayerView layer = make_layer(type, map, distinct, 12);
+    const bool apart = tells_keys_apart(layer.layer);
+    EXPECT_EQ(apart, type == ValueType::u8);
+    for (const auto& [address, tile] : layer.snapshot.tiles) {
+      LayerView one = layer;
+      one.snapshot.tiles = {{address, tile}};
+      std::map<double, std::vector<Sample>> expected;
+      for (const Sample& sample : samples(one, map))
+        expected[apart ? sample.value : 0].push_back(sample);
+      const auto keys = surface_keys(*tile, address, layer.layer, map);
+      ASSERT_EQ(keys.size(), expected.size());
+      std::size_t i = 0;
+      for (const auto& [value, texels] : expected) {
+        const auto& key = keys[i++];
+        EXPECT_EQ(key.bits, apart ? std::uint32_t(value) : key.bits);
+        EXPECT_EQ(key.texels, texels.size());
+        double area = 0;
+        glm::dvec3 weighted(0), low(1e300), high(-1e300);
+        for (const Sample& sample : texels) {
+          const glm::dvec3 position = sample.position - kOrigin;
+          area += sample.area;
+          weighted += sample.area * position;
+          low = glm::min(low, position);
+          high = glm::max(high, position);
+        }
+        EXPECT_NEAR(key.area.value(), area, 1e-9);
+        for (int axis = 0; axis < 3; ++axis) {
+          EXPECT_NEAR(key.weighted_position[axis], weighted[axis], 1e-5);
+          EXPECT_NEAR(key.lowest[axis], low[axis], 1e-9);
+          EXPECT_NEAR(key.highest[axis], high[axis], 1e-9);
+        }
+      }
+    }
+  }
 }
 
 TEST(QueryStatistics, they_agree_with_a_plain_sum_over_every_texel) {
