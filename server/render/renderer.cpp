@@ -79,7 +79,6 @@ struct Renderer::Impl {
 
   std::optional<Job> start(std::optional<FrameTask> task) {
     if (!task) return std::nullopt;
-    task->add_late_changes();
     auto frame = std::make_shared<FrameJob>(std::move(*task));
     under_way.push_back(frame);
     return Job{[this, frame] {

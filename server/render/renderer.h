@@ -242,8 +242,8 @@ class Renderer {
   void add_view(ModelHandle model, Done<ViewHandle> done);
   void remove_view(ViewHandle view);
   //
-  // A request may wait for its turn while people paint. `late_changes` is called once, when the
-  // frame begins, on the GPU thread and before any pixel of the frame is shaded. It returns the
+  // A request may wait for its turn while people paint. `late_changes` is called once, on the GPU
+  // thread, when the mesh is drawn and before any pixel of the frame is shaded. It returns the
   // boxes that changed since the call of `draw`, which are then part of `FrameRequest::changed`. It
   // is not called for a refinement, or if the request fails before its turn.
   using LateChanges = std::function<std::vector<FrameRequest::Box>()>;

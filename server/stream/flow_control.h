@@ -73,8 +73,8 @@ class FlowControl {
 
   // Returns the draw to start now. Returns nothing while a draw is in progress.
   std::optional<Draw> next();
-  // The turn of the draw has come, and its pixels are not read yet. Returns the boxes that changed
-  // since `next`, which the frame must show too. Returns nothing if the ticket is invalid.
+  // The pixels of the draw are shaded next. Returns the boxes that changed since `next`, which the
+  // frame must show too. Returns nothing if the ticket is invalid.
   std::vector<Box> on_begun(std::uint64_t ticket);
   // The draw is complete. Returns the number of the frame to send, or nothing if the frame is empty
   // (`sent` is false) or the ticket is invalid.

@@ -231,6 +231,7 @@ bool FrameJob::is_part_of_last(const View& view, const DepthKey& key) const {
 }
 
 Result<void> FrameJob::start_part(GpuScene& scene, const View& view, const DepthKey& key) {
+  task_.add_late_changes();  // now, because the mesh is drawn only around the changes
   const FrameRequest& request = task_.request;
   auto model = STRATA_TRY(scene.model(view.model));
   const auto rects = changed_rects(model->mesh().geometry(), view);
@@ -408,6 +409,7 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
 }
 
 Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
+  task_.add_late_changes();
   const FrameRequest& request = task_.request;
   auto model = STRATA_TRY(scene.model(view.model));
   const mesh::Geometry& geometry = model->mesh().geometry();

@@ -46,9 +46,9 @@ bool same_picture(const FrameRequest& a, const FrameRequest& b) {
 }
 
 void FrameTask::add_late_changes() {
-  for (const Asker& asker : askers) {
+  for (Asker& asker : askers) {
     if (!asker.late_changes) continue;
-    const auto boxes = asker.late_changes();
+    const auto boxes = std::exchange(asker.late_changes, {})();
     for (const auto& box : boxes)
       if (request.changed) add_box(*request.changed, box, kMaxBoxes);
   }

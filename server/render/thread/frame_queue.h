@@ -29,7 +29,7 @@ struct FrameTask {
     bool large = false;
   } turn;
 
-  // Called when the frame begins. Adds the changes since the requests, which the frame then shows.
+  // Adds the changes since the requests, which the frame then shows. Further calls do nothing.
   void add_late_changes();
 };
 

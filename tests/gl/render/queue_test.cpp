@@ -421,6 +421,8 @@ TEST_F(FrameTurns, a_frame_that_begins_shows_what_changed_while_it_waited) {
   rectangle->add_late_changes();
   EXPECT_EQ(*rectangle->request.changed, (Boxes{kBox, kOther}));
   EXPECT_EQ(asked, 2) << "each view learns that its changes are shown";
+  rectangle->add_late_changes();
+  EXPECT_EQ(asked, 2) << "once for each frame";
   queue.push(whole(3), ignore, late({kBox}));
   auto whole_frame = queue.take();
   ASSERT_TRUE(whole_frame);
