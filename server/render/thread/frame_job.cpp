@@ -249,6 +249,8 @@ Result<void> FrameJob::start_part(GpuScene& scene, const View& view, const Depth
   }
   part_ = rects.front();
   for (const PixelRect& rect : rects) part_ = around(part_, rect);
+  part_ = with_neighbors(part_, request.width, request.height,
+                         static_cast<double>(request.width) / request.camera.width);
   return {};
 }
 

@@ -72,6 +72,7 @@ class FrameJob {
   FrameTask task_;
   Camera camera_;  // camera of the frame, or of the current sample
   // The buffers of a partial frame whose view has none, and the part in which the mesh is drawn.
+  // The rest of the buffers has the content of another view.
   std::unique_ptr<View> shared_view_;
   PixelRect part_;
   // The state of a frame with several samples.

@@ -5,15 +5,18 @@
 #include <glm/gtx/component_wise.hpp>
 #include <limits>
 
+#include "shared/cut.h"
 #include "shared/shade.h"
 
 namespace strata::render {
 namespace {
 
-// A texel's color and outline affect the pixels around it. The outline is wider in frames with more
-// pixels than the camera's window.
+// Outlines are wider in frames with more pixels than the camera's window.
+double outline_px(double pixels, double pixel_scale) { return pixels * std::max(1.0, pixel_scale); }
+
+// A texel's color and outline affect the pixels around it.
 double padding_px(double pixel_scale) {
-  return 1.5 + shader::kOutlinePixels * std::max(1.0, pixel_scale);
+  return 1.5 + outline_px(shader::kOutlinePixels, pixel_scale);
 }
 constexpr int kAlign = 16;
 std::int64_t area(const PixelRect& rect) { return std::int64_t{rect.width} * rect.height; }
@@ -110,6 +113,13 @@ std::vector<PixelRect> screen_rects(std::span<const FrameRequest::Box> boxes,
     apart += area(rect) + rect_cost_px;
   }
   return apart < area(all) ? rects : std::vector{all};
+}
+
+PixelRect with_neighbors(const PixelRect& rect, int width, int height, double pixel_scale) {
+  const double widest = std::max(shader::kOutlinePixels, shader::kCutOutlinePixels);
+  const int more = static_cast<int>(std::ceil(outline_px(widest, pixel_scale) + 0.5));
+  return intersection({rect.x - more, rect.y - more, rect.width + 2 * more, rect.height + 2 * more},
+                      {0, 0, width, height});
 }
 
 void add_box(std::vector<FrameRequest::Box>& boxes, const FrameRequest::Box& box,

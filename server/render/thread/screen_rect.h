@@ -30,6 +30,10 @@ std::vector<PixelRect> screen_rects(std::span<const FrameRequest::Box> boxes,
                                     bool align_to_16, std::int64_t rect_cost_px = kRectCost_px,
                                     double pixel_scale = 1);
 
+// Returns the part of a frame whose surface the shading of a rectangle reads. The outlines of
+// values and of cuts depend on pixels around their own.
+PixelRect with_neighbors(const PixelRect& rect, int width, int height, double pixel_scale);
+
 // Adds a box to `boxes` unless it is in the list. If the list has `most` boxes, extends the box
 // that grows least.
 void add_box(std::vector<FrameRequest::Box>& boxes, const FrameRequest::Box& box, std::size_t most);

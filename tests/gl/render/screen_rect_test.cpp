@@ -48,6 +48,13 @@ TEST(ScreenRect, a_box_around_the_eye_takes_the_whole_picture_and_one_behind_it_
   EXPECT_EQ(screen_rect(beside, clip_of(camera), 640, 480, true), PixelRect{});
 }
 
+TEST(ScreenRect, the_pixels_that_outlines_read_are_added_but_none_outside_the_picture) {
+  EXPECT_EQ(render::with_neighbors({100, 50, 20, 30}, 640, 480, 1), (PixelRect{97, 47, 26, 36}));
+  EXPECT_EQ(render::with_neighbors({100, 50, 20, 30}, 640, 480, 2), (PixelRect{95, 45, 30, 40}));
+  EXPECT_EQ(render::with_neighbors({100, 50, 20, 30}, 640, 480, 0.5), (PixelRect{97, 47, 26, 36}));
+  EXPECT_EQ(render::with_neighbors({0, 460, 640, 20}, 640, 480, 1), (PixelRect{0, 457, 640, 23}));
+}
+
 TEST(ScreenRect, it_grows_to_multiples_of_16_but_not_out_of_the_picture) {
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 650, 470, 1);
   const render::FrameRequest::Box box{{1.2f, -0.9f, 0}, {1.3f, -0.8f, 0}};

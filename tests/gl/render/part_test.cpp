@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include "mesh/analysis/contact_shadow.h"
+#include "support/gl_scene.h"
+
+namespace strata::test {
+namespace {
+
+using Box = render::FrameRequest::Box;
+
+constexpr int kWidth = 640, kHeight = 480, kResolution = 512;
+constexpr render::PixelRect kWhole{0, 0, kWidth, kHeight};
+constexpr std::uint64_t kBytes = std::uint64_t{16} * kWidth * kHeight;  // buffers of one view
+constexpr int kViews = 8;  // views of this size that have buffers at the same time
+constexpr std::uint32_t kOutlined = 10, kHatched = 30, kDotted = 60, kOther = 90;
+
+std::shared_ptr<const Palette> patterned_palette() {
+  Palette palette{PaletteMode::categorical, 0, 255, {}, {}, Rgba{120, 120, 120, 255}};
+  const auto add = [&](std::uint32_t value, Rgba color, Pattern pattern) {
+    Palette::Point point{static_cast<double>(value), color};
+    point.pattern = pattern;
+    palette.points.push_back(std::move(point));
+  };
+  add(kOutlined, {200, 30, 30, 255}, Pattern::outline);
+  add(kHatched, {30, 160, 30, 255}, Pattern::hatch);
+  add(kDotted, {30, 30, 200, 255}, Pattern::dots);
+  add(kOther, {200, 200, 30, 255}, Pattern::solid);
+  return std::make_shared<const Palette>(std::move(palette));
+}
+
+// Rectangles of views that have lost their buffers.
+class Parts : public testing::Test {
+ protected:
+  Parts() : Parts(30) {}
+  explicit Parts(int quads_per_edge)
+      : scene_(make_scene(bumpy_sphere(quads_per_edge), kResolution)),
+        model_(renderer_.add(scene_)),
+        layer_(renderer_.add_layer(model_, ValueType::u8, kResolution)) {}
+
+  static render::RendererOptions options() {
+    render::RendererOptions options;
+    options.gpu_memory_bytes = 160u << 20;  // a quarter is the memory of eight views
+    return options;
+  }
+  // `scale` is the number of frame pixels per pixel of the window.
+  render::FrameRequest request_from(const glm::dvec3& eye, int scale = 1) {
+    render::FrameRequest request;
+    request.view = renderer_.add_view(model_);
+    request.camera = perspective_camera(eye, {0, 0, 0}, kWidth / scale, kHeight / scale);
+    request.width = kWidth, request.height = kHeight;
+    request.style.layers = {{layer_, patterned_palette(), 0.8f}};
+    return request;
+  }
+  // Draws the frames of so many other views that all earlier views lose their buffers.
+  void take_buffers() {
+    std::vector<render::ViewHandle> others;
+    for (int i = 0; i < kViews; ++i) {
+      auto request = request_from({2.4, 0.1 * i, 1.2});
+      renderer_.draw(request);
+      others.push_back(request.view);
+    }
+    for (const auto view : others) renderer_->remove_view(view);
+  }
+  Box paint(const Camera& camera, double x, double y, double radius, std::uint32_t value) {
+    const auto outcome = renderer_.paint(layer_, dab(camera, x * camera.width, y * camera.height,
+                                                     radius * camera.width / kWidth, value));
+    return {outcome.written_min, outcome.written_max};
+  }
+  // Fills the buffers that views share with another picture. All its pixels differ from those of
+  // the tested views: it shows the other side from nearby.
+  void spoil_shared_buffers(const render::FrameRequest& other) {
+    auto request = other;
+    request.changed = {{glm::vec3(-1.3f), glm::vec3(1.3f)}};
+    const auto part = renderer_.draw(request);
+    ASSERT_FALSE(part.rects.empty());
+  }
+  // Draws the view's frame, takes its buffers, paints and then expects that the rectangles of the
+  // changes have the pixels of a whole frame.
+  void expect_parts_equal_the_whole(const render::FrameRequest& request, std::vector<Box> changed) {
+    Camera uncut = request.camera;
+    uncut.section.clear();
+    paint(uncut, 0.4, 0.45, 110, kOutlined);
+    paint(uncut, 0.6, 0.55, 70, kHatched);
+    paint(uncut, 0.45, 0.7, 60, kDotted);
+    auto other = request_from({-0.4, 0.3, -1.7});
+    other.style.background = {{5, 90, 5, 255}, {90, 5, 90, 255}};
+    auto picture = renderer_.draw(request);
+    renderer_.draw(other);
+    take_buffers();
+
+    for (const glm::dvec2 at : {glm::dvec2(0.4, 0.45), {0.61, 0.56}, {0.45, 0.69}})
+      changed.push_back(paint(uncut, at.x, at.y, 9, kOther));
+    for (const Box& box : changed) {
+      spoil_shared_buffers(other);
+      auto one = request;
+      one.changed = {box};
+      const auto part = renderer_.draw(one);
+      ASSERT_FALSE(part.rects.empty());
+      ASSERT_NE(part.rects.at(0), kWhole) << "a part was requested";
+      put(picture, part);
+    }
+    EXPECT_EQ(picture.pixels, renderer_.draw(request).pixels);
+    renderer_->remove_view(request.view);
+    renderer_->remove_view(other.view);
+  }
+
+  TestRenderer renderer_{options()};
+  Scene scene_;
+  render::ModelHandle model_;
+  render::LayerHandle layer_;
+};
+
+TEST_F(Parts, patterns_and_outlines_at_the_border_of_a_part_are_those_of_the_whole_frame) {
+  expect_parts_equal_the_whole(request_from({1.2, 1.0, 2.4}), {});
+}
+
+TEST_F(Parts, outlines_are_also_whole_in_frames_with_more_pixels_than_the_window) {
+  expect_parts_equal_the_whole(request_from({1.2, 1.0, 2.4}, 2), {});
+}
+
+TEST_F(Parts, a_part_at_the_border_of_the_frame_equals_the_whole_frame) {
+  expect_parts_equal_the_whole(request_from({0.5, 0.4, 1.5}),
+                               {{{-0.95f, -0.1f, -0.1f}, {-0.6f, 0.1f, 0.3f}}});
+}
+
+TEST_F(Parts, a_part_of_a_cut_has_no_outline_at_its_border) {
+  auto request = request_from({0.4, 0.3, 2.8});
+  request.camera.section = {{0, 0, -1, 0.3}};  // keeps z below 0.3, and the eye is cut away
+  expect_parts_equal_the_whole(request, {{{-0.1f, -0.1f, 0.28f}, {0.1f, 0.1f, 0.3f}}});
+}
+
+TEST_F(Parts, lines_points_and_the_contact_shadow_are_those_of_the_whole_frame) {
+  auto request = request_from({1.2, 1.0, 2.4});
+  request.style.features = std::make_shared<const std::vector<render::DrawnFeature>>(
+      std::vector<render::DrawnFeature>{{{{-0.5, 0.1, 1.0}, {0.7, 0.3, 0.8}}, {200, 0, 0, 255}},
+                                        {{{0.5, 0.3, 0.85}}, {0, 0, 200, 255}}});
+  request.style.contact_shadow = mesh::contact_shadow(*scene_.geometry, "z");
+  expect_parts_equal_the_whole(request, {{{-1.2f, -1.2f, -1.1f}, {-0.7f, -0.7f, -0.9f}}});
+}
+
+// So many clusters are culled by the depth of the nearer ones, which is that of another view
+// outside the part.
+class PartsOfManyClusters : public Parts {
+ protected:
+  PartsOfManyClusters() : Parts(180) {}
+};
+
+TEST_F(PartsOfManyClusters, equal_the_whole_frame) {
+  expect_parts_equal_the_whole(request_from({1.2, 1.0, 2.4}),
+                               {{glm::vec3(-0.9f), glm::vec3(0.9f)}});
+}
+
+}  // namespace
+}  // namespace strata::test
