@@ -215,7 +215,8 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   if (has_gbuffer(key)) return {};
   view.images = request.style.images;
   view.lighting = request.style.light;
-  if (!view.has_buffers()) scene.limit_buffers(request.width, request.height);
+  if (!view.has_buffers_of(request.width, request.height))
+    scene.limit_buffers(view, request.width, request.height);
   return prepare_gbuffer(view, key, scene.depths(), scene.memory());
 }
 

@@ -141,7 +141,7 @@ void GpuScene::return_shared_buffers(std::unique_ptr<View> buffers) {
   if (shared_buffers_.size() > kMaxSharedBuffers) shared_buffers_.pop_back();
 }
 
-void GpuScene::limit_buffers(int width, int height) {
+void GpuScene::limit_buffers(const View& of, int width, int height) {
   const auto bytes_of = [](const View& view) {
     return View::bytes_of_buffers(view.key.width, view.key.height);
   };
@@ -149,20 +149,21 @@ void GpuScene::limit_buffers(int width, int height) {
   const std::uint64_t limit = std::max(memory_.budget() / kShareOfViews, kLeastViews * bytes);
   std::uint64_t used = bytes;
   for (const auto& [handle, view] : views_)
-    if (view.has_buffers()) used += bytes_of(view);
+    if (view.has_buffers() && &view != &of) used += bytes_of(view);
   while (used > limit) {
-    View* const oldest = least_recent_view();
+    View* const oldest = least_recent_view(&of);
     if (!oldest) return;
     used -= bytes_of(*oldest);
     oldest->drop_buffers();
   }
 }
 
-// Returns the least recently used view with buffers that can be freed, or null.
-View* GpuScene::least_recent_view() {
+// Returns the least recently used view with buffers that can be freed, except `besides`, or null.
+View* GpuScene::least_recent_view(const View* besides) {
   View* oldest = nullptr;
   for (auto& [handle, view] : views_)
-    if (view.has_buffers() && !view.drawing && (!oldest || view.last_used < oldest->last_used))
+    if (view.has_buffers() && !view.drawing && &view != besides &&
+        (!oldest || view.last_used < oldest->last_used))
       oldest = &view;
   return oldest;
 }

@@ -73,10 +73,11 @@ class GpuScene {
   // them after the frame.
   std::unique_ptr<View> take_shared_buffers(int width, int height);
   void return_shared_buffers(std::unique_ptr<View> buffers);
-  // Makes room for the buffers of one more view. The buffers of views take at most a quarter of the
-  // memory budget, or the memory of eight views of this size. Beyond that, the least recently used
-  // ones are freed, because drawing a rectangle without them takes only a little longer.
-  void limit_buffers(int width, int height);
+  // Makes room for new buffers of a view of this size, instead of those that it may have. The
+  // buffers of views take at most a quarter of the memory budget, or the memory of eight views of
+  // this size. Beyond that, the least recently used ones are freed, because drawing a rectangle
+  // without them takes only a little longer.
+  void limit_buffers(const View& of, int width, int height);
 
   ModelHandle add(Model model);
   SurfaceImageHandle add(SurfaceImage image);
@@ -102,7 +103,7 @@ class GpuScene {
   GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory);
   Result<void> load();
   bool evict_one();
-  View* least_recent_view();
+  View* least_recent_view(const View* besides = nullptr);
   // Evicts the least recently used layer. If `pool` is given, evicts a layer of this pool.
   bool let_a_layer_leave(const PagePool* pool = nullptr);
   std::uint64_t next_handle() { return generation_ << 40 | ++handles_; }

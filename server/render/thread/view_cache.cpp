@@ -30,9 +30,7 @@ bool View::has_style(const FrameRequest& request) const {
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths,
                              GpuMemory& memory) {
   view.gbuffer_complete = view.picture_complete = view.returned = false;
-  if (view.has_buffers() &&
-      (view.picture.width() != key.width || view.picture.height() != key.height))
-    view.drop_buffers();
+  if (view.has_buffers() && !view.has_buffers_of(key.width, key.height)) view.drop_buffers();
   if (!view.has_buffers()) {
     const auto pixels = static_cast<std::uint64_t>(key.width) * static_cast<unsigned>(key.height);
     auto share = STRATA_TRY(memory.reserve(pixels * 12, "a view"));

@@ -40,6 +40,9 @@ struct View {
   FeatureBuffer seen_features;  // the marks, tested with the g-buffer's camera
 
   bool has_buffers() const { return static_cast<bool>(picture); }
+  bool has_buffers_of(int width, int height) const {
+    return has_buffers() && picture.width() == width && picture.height() == height;
+  }
   static std::uint64_t bytes_of_buffers(int width, int height);
   void drop_buffers();
   bool has_style(const FrameRequest& request) const;

@@ -138,6 +138,22 @@ TEST_F(Parts, lines_points_and_the_contact_shadow_are_those_of_the_whole_frame) 
   expect_parts_equal_the_whole(request, {{{-1.2f, -1.2f, -1.1f}, {-0.7f, -0.7f, -0.9f}}});
 }
 
+TEST_F(Parts, views_whose_frames_grow_do_not_exceed_the_limit_of_buffers) {
+  std::vector<render::FrameRequest> requests;
+  for (int i = 0; i < 3 * kViews; ++i) {
+    requests.push_back(request_from({1.2, 0.05 * i, 2.4}));
+    requests.back().width = kWidth / 4, requests.back().height = kHeight / 4;
+  }
+  renderer_.draw(requests.front());
+  const auto before = renderer_->gpu_bytes_used();
+  for (const auto& request : requests) renderer_.draw(request);
+  for (auto& request : requests) {
+    request.width = kWidth, request.height = kHeight;
+    EXPECT_EQ(renderer_.draw(request).rects.at(0), kWhole);
+    EXPECT_LE(renderer_->gpu_bytes_used(), before + options().gpu_memory_bytes / 4);
+  }
+}
+
 // So many clusters are culled by the depth of the nearer ones, which is that of another view
 // outside the part.
 class PartsOfManyClusters : public Parts {
@@ -147,7 +163,7 @@ class PartsOfManyClusters : public Parts {
 
 TEST_F(PartsOfManyClusters, equal_the_whole_frame) {
   expect_parts_equal_the_whole(request_from({1.2, 1.0, 2.4}),
-                               {{glm::vec3(-0.9f), glm::vec3(0.9f)}});
+                               {{glm::vec3(-0.6f), glm::vec3(0.6f)}});
 }
 
 }  // namespace
