@@ -462,7 +462,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   }
   const std::int64_t sequence_before = layer.layer.sequence;
   layer.mirror->put(tiles, sequence);
-  put_provisional(layer, provisional, sequence);
+  put_provisional(layer, provisional, sequence, box);
   host_->set_sequence(layer, sequence);
   // The frames of the edit are requested before its texels are counted and compressed for the
   // journal, so these milliseconds do not delay the pixels.
@@ -560,21 +560,31 @@ void EditPipeline::refuse_pending(const Error& why) {
     answer(pending.event.id, std::exchange(pending.saved, {}), tl::unexpected(why));
 }
 
-void EditPipeline::put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence) {
+void EditPipeline::put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence,
+                                   const std::optional<render::FrameRequest::Box>& box) {
   if (tiles.empty()) return;
   const bool was_empty = layer.provisional->empty();
   layer.provisional->put(tiles, sequence);
   if (layer.provisional->empty() != was_empty) host_->styles_changed();
   std::set<TileAddress> addresses = std::exchange(stale_marks_[layer.layer.id], {});
+  const auto area = addresses.empty() ? box : std::nullopt;
   for (const auto& [address, tile] : tiles) addresses.insert(address);
   std::vector<render::TileUpload> uploads;
   for (const TileAddress address : addresses)
     uploads.push_back({address, layer.provisional->tile(address)});
-  const auto failed = [this, id = layer.layer.id,
-                       addresses = std::move(addresses)](const Result<void>& uploaded) {
-    if (!uploaded) stale_marks_[id].insert(addresses.begin(), addresses.end());
+  // The upload can wait for a stroke on the GPU. Frames drawn during this wait show the edit
+  // without its marks, so the views draw the marked area once more.
+  const auto written = [this, id = layer.layer.id, area,
+                        addresses = std::move(addresses)](const Result<void>& uploaded) {
+    if (!uploaded) {
+      stale_marks_[id].insert(addresses.begin(), addresses.end());
+    } else if (LayerState* marked = closed_ ? nullptr : host_->find_layer(id)) {
+      const std::int64_t newest = marked->layer.sequence;
+      area ? host_->content_changed(*marked, area, newest)
+           : announce_tiles(*marked, addresses, newest);
+    }
   };
-  parts_.renderer.write_tiles(layer.handles.provisional, std::move(uploads), then(failed));
+  parts_.renderer.write_tiles(layer.handles.provisional, std::move(uploads), then(written));
 }
 
 TileMap EditPipeline::durable_provisional(const LayerState& layer) const {
@@ -632,7 +642,7 @@ void EditPipeline::roll_back_when_answered() {
     LayerState* layer = closed_ ? nullptr : host_->find_layer(layer_id);
     if (!layer) continue;
     layer->mirror->put(before.tiles, before.sequence);
-    put_provisional(*layer, before.provisional, before.sequence);
+    put_provisional(*layer, before.provisional, before.sequence, std::nullopt);
     host_->set_sequence(*layer, before.sequence);
     since_key_tile_.erase(layer_id);  // the key tiles may be in unsaved edits
     for (const auto& [address, data] : before.tiles) stale_[layer_id].insert(address);
@@ -691,11 +701,7 @@ void EditPipeline::repaired(const std::optional<Error>& failure) {
   if (!failure) {
     for (const auto& [layer_id, tiles] : std::exchange(stale_, {})) {
       const LayerState* layer = host_->find_layer(layer_id);
-      if (!layer) continue;
-      const int resolution = layer->layer.resolution;
-      const auto bounds = parts_.maps->bounds(resolution);
-      host_->content_changed(*layer, bounds ? box_of(tiles, *bounds, resolution) : std::nullopt,
-                             sequence_);
+      if (layer) announce_tiles(*layer, tiles, sequence_);
     }
     return;
   }
@@ -708,6 +714,15 @@ void EditPipeline::repaired(const std::optional<Error>& failure) {
     self->repair_waits_ = false;
     if (!cancelled) self->step();
   });
+}
+
+// Requests new frames of an area whose content is now on the GPU.
+void EditPipeline::announce_tiles(const LayerState& layer, const std::set<TileAddress>& tiles,
+                                  std::int64_t sequence) {
+  const int resolution = layer.layer.resolution;
+  const auto bounds = parts_.maps->bounds(resolution);
+  host_->content_changed(layer, bounds ? box_of(tiles, *bounds, resolution) : std::nullopt,
+                         sequence);
 }
 
 bool EditPipeline::take_news(std::int64_t last_sequence, const std::vector<LayerNews>& news) {

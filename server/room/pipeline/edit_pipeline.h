@@ -193,8 +193,10 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void commit(Waiting& item, LayerState& layer, ComputedEdit computed,
               const std::optional<render::FrameRequest::Box>& box);
   void submit(store::JournalEntry entry, Pending& pending);
-  // A null tile means that no texel of the tile waits for review.
-  void put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence);
+  // A null tile means that no texel of the tile waits for review. The box contains the tiles'
+  // changes, if it is known.
+  void put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence,
+                       const std::optional<render::FrameRequest::Box>& box);
   void on_saved(std::int64_t sequence, const Result<void>& result);
   void roll_back_when_answered();
   bool repair();  // returns false if the GPU is up to date
@@ -202,6 +204,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   // unload or replace a layer at any time.
   bool has(LayerId id, render::LayerHandle handle) const;
   void repaired(const std::optional<Error>& failure);
+  void announce_tiles(const LayerState& layer, const std::set<TileAddress>& tiles,
+                      std::int64_t sequence);
   void refuse(Waiting& item, const Error& why);
   void report(const Pending& pending, const Error* why);
   void answer(const Uuid& id, const Saved& saved, const Result<EditAnswer>& result);
