@@ -3,14 +3,24 @@
 #include <algorithm>
 
 namespace strata::render {
+namespace {
+
+constexpr std::size_t kMostBytesOfMarksKept = 64 * 1024;
+
+}  // namespace
 
 std::uint64_t View::bytes_of_buffers(int width, int height) {
   constexpr std::uint64_t kBytesPerPixel = 16;  // texture coordinates, light, frame, depth
   return kBytesPerPixel * static_cast<unsigned>(width) * static_cast<unsigned>(height);
 }
 
-// Keeps `seen_features`, which is small and which partial frames need.
+// Keeps few marks, because partial frames need them. Many marks take as much memory as the buffers,
+// and the memory ledger does not contain them. Without them, the next frame is a whole one.
 void View::drop_buffers() {
+  if (seen_features.segments.buffer().size() > kMostBytesOfMarksKept) {
+    seen_features = {};
+    returned = false;
+  }
   gbuffer = {};
   shading = {};
   uv = {};

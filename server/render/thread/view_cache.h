@@ -44,7 +44,7 @@ struct View {
     return has_buffers() && picture.width() == width && picture.height() == height;
   }
   static std::uint64_t bytes_of_buffers(int width, int height);
-  void drop_buffers();
+  void drop_buffers();  // also drops many marks
   bool has_style(const FrameRequest& request) const;
   // Returns whether `picture` shows this request, except for changes on the surface.
   bool shows(const FrameRequest& request) const { return picture_complete && has_style(request); }

@@ -154,6 +154,26 @@ TEST_F(Parts, views_whose_frames_grow_do_not_exceed_the_limit_of_buffers) {
   }
 }
 
+TEST_F(Parts, a_view_that_has_lost_many_marks_draws_the_whole_frame) {
+  auto request = request_from({1.2, 1.0, 2.4});
+  for (const int count : {5, 2000}) {
+    std::vector<render::DrawnFeature> points;
+    for (int i = 0; i < count; ++i)
+      points.push_back({{{-0.5 + 0.0005 * i, 0.3, 0.85}}, {0, 0, 200, 255}});
+    request.style.features =
+        std::make_shared<const std::vector<render::DrawnFeature>>(std::move(points));
+    request.changed.reset();
+    auto picture = renderer_.draw(request);
+    take_buffers();
+    request.changed = {paint(request.camera, 0.5, 0.5, 9, kOther)};
+    const auto part = renderer_.draw(request);
+    EXPECT_EQ(part.rects.at(0) == kWhole, count == 2000);
+    put(picture, part);
+    request.changed.reset();
+    EXPECT_EQ(picture.pixels, renderer_.draw(request).pixels);
+  }
+}
+
 // So many clusters are culled by the depth of the nearer ones, which is that of another view
 // outside the part.
 class PartsOfManyClusters : public Parts {
