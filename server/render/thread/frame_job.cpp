@@ -150,6 +150,7 @@ void FrameJob::release_view(GpuScene& scene, bool is_complete) {
 Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
   view.last_used = scene.next_use();
+  if (request.acting) view.acted = std::chrono::steady_clock::now();
   if (request.model != 0 && request.model != view.model)
     return fail(ErrorCode::invalid, "Wrong model",
                 "The request names a different model than its view. Send the model of the view, or "
@@ -221,14 +222,15 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
 }
 
 // Returns whether the requester has the last frame of a view without buffers, and needs only the
-// changed parts.
+// changed parts. A user who acts gets the whole frame once, and with it buffers and a depth that
+// the next strokes use.
 bool FrameJob::is_part_of_last(const View& view, const DepthKey& key) const {
   const FrameRequest& request = task_.request;
   DepthKey last = view.key;
   if (request.moving) last.level = 0;  // any level drawn for this camera is good enough
-  return request.changed && !view.has_buffers() && view.returned && last == key &&
-         view.images == request.style.images && view.lighting == request.style.light &&
-         view.has_style(request);
+  return request.changed && !request.acting && !view.has_buffers() && view.returned &&
+         last == key && view.images == request.style.images &&
+         view.lighting == request.style.light && view.has_style(request);
 }
 
 Result<void> FrameJob::start_part(GpuScene& scene, const View& view, const DepthKey& key) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
+#include <utility>
 
 namespace strata::render {
 namespace {
@@ -13,6 +15,8 @@ constexpr std::size_t kTrianglesPerSliceHardware = 2 * 1024 * 1024;
 constexpr int kLowestResolution = kTileSize, kMaxResolution = 16384;
 // Partial frames of views without buffers. One is drawn while another is read back.
 constexpr std::size_t kMaxSharedBuffers = 2;
+// A user who pauses for so long between strokes still acts.
+constexpr std::chrono::seconds kActedLately{60};
 constexpr std::uint64_t kShareOfViews = 4, kLeastViews = 8;
 constexpr std::uint64_t kDefaultBudget = std::uint64_t{4} << 30;
 
@@ -159,11 +163,16 @@ void GpuScene::limit_buffers(const View& of, int width, int height) {
 }
 
 // Returns the least recently used view with buffers that can be freed, except `besides`, or null.
+// Views of onlookers come first: they need buffers less than users who turn the model or paint.
 View* GpuScene::least_recent_view(const View* besides) {
+  const auto since = std::chrono::steady_clock::now() - kActedLately;
+  const auto rank = [&](const View& view) {
+    return std::pair(view.acted && *view.acted > since, view.last_used);
+  };
   View* oldest = nullptr;
   for (auto& [handle, view] : views_)
     if (view.has_buffers() && !view.drawing && &view != besides &&
-        (!oldest || view.last_used < oldest->last_used))
+        (!oldest || rank(view) < rank(*oldest)))
       oldest = &view;
   return oldest;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
+#include <optional>
 
 #include "render/renderer.h"
 #include "render/view/depth_buffers.h"
@@ -16,6 +18,7 @@ struct View {
   ModelHandle model = 0;
   bool drawing = false;  // a frame is in progress, so it must not be evicted
   std::uint64_t last_used = 0;
+  std::optional<std::chrono::steady_clock::time_point> acted;  // last frame of an acting user
 
   DepthKey key;
   std::vector<SurfaceImageStyle> images;  // images in the g-buffer

@@ -174,6 +174,19 @@ TEST_F(Parts, a_view_that_has_lost_many_marks_draws_the_whole_frame) {
   }
 }
 
+TEST_F(Parts, a_painter_who_has_lost_the_buffers_gets_them_back_and_keeps_them) {
+  auto request = request_from({1.2, 1.0, 2.4});
+  renderer_.draw(request);
+  take_buffers();
+  request.acting = true;
+  request.changed = {paint(request.camera, 0.5, 0.5, 9, kOther)};
+  EXPECT_EQ(renderer_.draw(request).rects.at(0), kWhole);
+  take_buffers();
+  // The views of onlookers have lost their buffers instead, so this is only a rectangle.
+  request.changed = {paint(request.camera, 0.4, 0.5, 9, kOutlined)};
+  EXPECT_NE(renderer_.draw(request).rects.at(0), kWhole);
+}
+
 // So many clusters are culled by the depth of the nearer ones, which is that of another view
 // outside the part.
 class PartsOfManyClusters : public Parts {
