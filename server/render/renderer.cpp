@@ -84,7 +84,7 @@ struct Renderer::Impl {
     return Job{[this, frame] {
                  const Step step = frame->step(*scene);
                  if (step == Step::done) {
-                   frames.finished(frame->task(), frame->busy_ms());
+                   frames.finished(frame->task(), frame->busy_ms(), frame->is_drawn());
                    frame_times.add(std::chrono::duration_cast<std::chrono::nanoseconds>(
                        std::chrono::duration<double, std::milli>(frame->busy_ms())));
                  }

@@ -132,6 +132,7 @@ Step FrameJob::step(GpuScene& scene) {
       scene.detail_budget().smoothed(
           frame_.pixels.size() / 4 * static_cast<std::size_t>(samples_ - 1),
           ms_since(*samples_begin_));
+    is_drawn_ = true;
     answer(std::make_shared<const Frame>(std::move(frame_)));
   }
   return *step;

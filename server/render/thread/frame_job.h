@@ -22,6 +22,7 @@ class FrameJob {
 
   const FrameTask& task() const { return task_; }
   double busy_ms() const { return busy_ms_; }
+  bool is_drawn() const { return is_drawn_; }  // the requesters have got the frame
   // The frame's turn, with the current served time of its requester.
   FrameTask::Turn turn() const {
     return {task_.turn.acting, task_.turn.ms + busy_ms_ / static_cast<double>(task_.askers.size()),
@@ -94,6 +95,7 @@ class FrameJob {
   Rows shaded_, collected_;
   gl::Readback pixels_;  // one rectangle after another, lowest row first
   double busy_ms_ = 0;
+  bool is_drawn_ = false;
 };
 
 }  // namespace strata::render

@@ -269,7 +269,7 @@ void FrameQueue::view_acts(ViewHandle view) {
   sort(place);
 }
 
-void FrameQueue::finished(const FrameTask& task, double took_ms) {
+void FrameQueue::finished(const FrameTask& task, double took_ms, bool is_drawn) {
   std::lock_guard lock(mutex_);
   const auto rests = [&](ViewHandle view, double served_ms) {
     const auto found = views_.find(view);
@@ -279,7 +279,10 @@ void FrameQueue::finished(const FrameTask& task, double took_ms) {
     if (state.waits) remove_turn(*state.waits);
     state.served_ms += served_ms;
     if (state.waits) sort(*state.waits);
-    if (state.gone && !state.waits) erase_view(view);
+    // A request that was pushed after `forget` fails, and nothing else would erase its view.
+    const bool failed = !is_drawn && view == task.request.view;
+    if (failed) forget_drew(view, state);
+    if ((state.gone || failed) && !state.waits) erase_view(view);
   };
   for (const auto& asker : task.askers)
     rests(asker.view, took_ms / static_cast<double>(task.askers.size()));

@@ -75,7 +75,9 @@ class FrameQueue {
   std::optional<FrameTask> take_part(std::span<const FrameTask::Turn> under_way);
   // The user of this view acts now. A waiting request of the view gets the turn of an acting user.
   void view_acts(ViewHandle view);
-  void finished(const FrameTask& task, double took_ms);
+  // After a failure, the view that should have drawn the frame is not preferred for it any longer,
+  // because it may have been removed.
+  void finished(const FrameTask& task, double took_ms, bool is_drawn = true);
   void forget(ViewHandle view);       // called when the view is removed
   std::vector<FrameTask> take_all();  // also forgets the frames in progress and all views
 

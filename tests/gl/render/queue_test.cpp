@@ -77,6 +77,24 @@ TEST_F(FrameTurns, the_latest_request_of_a_view_wins_and_inherits_what_was_to_be
   EXPECT_FALSE(queue.take()->request.changed.has_value());
 }
 
+TEST_F(FrameTurns, a_view_whose_frame_failed_does_not_draw_the_same_frame_of_another_view) {
+  FrameQueue queue(8);
+  // View 1 was removed between its request and the call of `push`.
+  queue.forget(1);
+  push(queue, shared(whole(1)));
+  const auto failed = queue.take();
+  ASSERT_TRUE(failed);
+  queue.finished(*failed, 1, false);
+  push(queue, shared(whole(2)));
+  const auto next = queue.take();
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->request.view, 2u);
+  queue.finished(*next, 1);
+  // After a success, the view draws it again for others.
+  push(queue, shared(whole(3)));
+  EXPECT_EQ(queue.take()->request.view, 2u);
+}
+
 TEST_F(FrameTurns, a_view_has_one_frame_under_way_and_one_that_waits_and_too_many_are_refused) {
   FrameQueue queue(2);
   push(queue, whole(1));
