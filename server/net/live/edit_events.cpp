@@ -8,7 +8,7 @@ namespace strata::net {
 std::optional<EditEvents::Clock::duration> EditEvents::add(const protocol::LayerEvent& event,
                                                            Clock::duration interval,
                                                            Clock::time_point now) {
-  const auto [place, fresh] = waiting_.try_emplace(event.layer_id, event);
+  const auto [place, fresh] = waiting_.try_emplace(std::pair(event.layer_id, event.user), event);
   if (!fresh) {
     const auto provisional = place->second.provisional;
     place->second = event;
@@ -22,9 +22,14 @@ std::optional<EditEvents::Clock::duration> EditEvents::add(const protocol::Layer
 std::vector<protocol::LayerEvent> EditEvents::take(Clock::time_point now) {
   is_due_ = false;
   taken_ = now;
+  return take_before();
+}
+
+std::vector<protocol::LayerEvent> EditEvents::take_before() {
   std::vector<protocol::LayerEvent> events;
-  for (auto& [layer, event] : waiting_) events.push_back(std::move(event));
+  for (auto& [of, event] : waiting_) events.push_back(std::move(event));
   waiting_.clear();
+  std::ranges::sort(events, {}, &protocol::LayerEvent::sequence);
   return events;
 }
 

@@ -3,17 +3,18 @@
 #include <chrono>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "core/ids.h"
 #include "protocol/messages.h"
 
 namespace strata::net {
 
 // The events of other people's edits that one session has not sent yet. If hundreds of people watch
 // a painter, one message for each edit and each person would take more processor time than the
-// frames. So the events of a layer that come within an interval become one event, with the newest
-// sequence. Not thread-safe.
+// frames. So the events of one user in one layer that come within an interval become one event,
+// with the newest sequence. Not thread-safe.
 class EditEvents {
  public:
   using Clock = std::chrono::steady_clock;
@@ -23,15 +24,17 @@ class EditEvents {
   // last `interval`.
   std::optional<Clock::duration> add(const protocol::LayerEvent& event, Clock::duration interval,
                                      Clock::time_point now);
-  // Returns the newest event of each layer. It has the user of the newest edit, and it is
-  // provisional if any of its edits is.
+  // Returns the waiting events in the order of their sequences. An event is provisional if any of
+  // its edits is.
   std::vector<protocol::LayerEvent> take(Clock::time_point now);
-  // Drops the events of a layer, because the caller sends a newer message about it.
-  void drop(LayerId layer) { waiting_.erase(layer.number()); }
+  // Like `take`, but before another message that must follow the waiting events. The time that
+  // `add` has returned stays valid.
+  std::vector<protocol::LayerEvent> take_before();
 
  private:
-  std::map<std::int64_t, protocol::LayerEvent> waiting_;  // by layer
-  bool is_due_ = false;                                   // the caller will call `take`
+  // By layer and user.
+  std::map<std::pair<std::int64_t, std::optional<std::string>>, protocol::LayerEvent> waiting_;
+  bool is_due_ = false;  // the caller will call `take`
   std::optional<Clock::time_point> taken_;
 };
 

@@ -477,6 +477,7 @@ void LiveSession::on_applied(const Uuid& id, const std::optional<BatchName>& bat
   {
     std::lock_guard lock(mutex_);
     if (auto found = own_edits_.find(id); found != own_edits_.end()) found->second = true;
+    send_waiting_edits();
   }
   send(edit_message<protocol::Applied>(id, batch.has_value(), batch ? batch->stroke : Uuid{},
                                        batch ? batch->n : 0, answer));
@@ -532,7 +533,7 @@ void LiveSession::edit_applied(const Edit& edit) {
   {
     std::lock_guard lock(mutex_);
     if (edit.review || !socket) {  // each decision is a separate message
-      edit_events_.drop(edit.layer_id);
+      send_waiting_edits();
       return send(event);
     }
     const bool are_few = people_sent_ <= shared_->limits.presence_people;
@@ -553,18 +554,24 @@ void LiveSession::send_edits() {
   for (const auto& event : edit_events_.take(EditEvents::Clock::now())) send(event);
 }
 
+// Call with the lock, before a message that contains a newer state of a layer than the waiting
+// events. So the sequences of a layer arrive in the order of its edits.
+void LiveSession::send_waiting_edits() {
+  for (const auto& event : edit_events_.take_before()) send(event);
+}
+
 void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Error&) {
   // Notifies other users of the restored layer. The authors get a response to each edit.
   std::map<LayerId, std::int64_t> sequences;
   for (const auto& edit : edits)
     sequences[edit.layer_id] = std::max(sequences[edit.layer_id], edit.sequence);
   std::lock_guard lock(mutex_);
+  send_waiting_edits();
   for (const auto& [layer_id, sequence] : sequences) {
     protocol::LayerEvent event;
     event.event = protocol::LayerEventEvent::edited;
     event.layer_id = layer_id.number();
     event.sequence = sequence;
-    edit_events_.drop(layer_id);
     send(event);
   }
 }
@@ -575,7 +582,7 @@ void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
   event.event = named<protocol::LayerEventEvent>(change);
   if (change != LayerChange::deleted) event.layer = to_json(layer);
   std::lock_guard lock(mutex_);
-  if (change != LayerChange::changed) edit_events_.drop(layer.id);
+  send_waiting_edits();
   send(event);
 }
 

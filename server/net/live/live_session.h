@@ -151,6 +151,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   std::chrono::milliseconds presence_pause() const;
   void send_presence();
   void send_edits();
+  void send_waiting_edits();
   void send(const protocol::ServerMessage& message);
   void refuse(const Error& problem, const std::string& ref);
   void refuse(const Error& problem, const Uuid& id) { refuse(problem, to_string(id)); }

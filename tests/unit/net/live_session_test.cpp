@@ -493,19 +493,27 @@ TEST_F(Live, with_many_people_the_edits_of_a_layer_are_told_together) {
   socket->later.back()();
   auto told = socket->of("layer");
   ASSERT_EQ(told.size(), 3u);
-  EXPECT_EQ(told[1]["layer_id"], 7);
-  EXPECT_EQ(told[1]["sequence"], 4);
-  EXPECT_EQ(told[1]["provisional"], true) << "one of the edits waits for review";
-  EXPECT_EQ(told[2]["layer_id"], 8);
-  EXPECT_EQ(told[2]["sequence"], 3);
-  // A decision of a curator is a message of its own, and nothing older follows it.
+  EXPECT_EQ(told[1]["layer_id"], 8) << "in the order of the sequences";
+  EXPECT_EQ(told[1]["sequence"], 3);
+  EXPECT_EQ(told[2]["layer_id"], 7);
+  EXPECT_EQ(told[2]["sequence"], 4);
+  EXPECT_EQ(told[2]["provisional"], true) << "one of the edits waits for review";
+  // A decision of a curator is a message of its own. The waiting edits precede it, those of each
+  // user by themselves.
+  auto carls = edit(7);
+  carls.user = "carl";
+  session->edit_applied(carls);
   session->edit_applied(edit(7));
   auto decision = edit(7);
   decision.review.emplace();
   session->edit_applied(decision);
   told = socket->of("layer");
-  ASSERT_EQ(told.size(), 4u);
-  EXPECT_EQ(told[3]["sequence"], 6);
+  ASSERT_EQ(told.size(), 6u);
+  EXPECT_EQ(told[3]["user"], "carl");
+  EXPECT_EQ(told[3]["sequence"], 5);
+  EXPECT_EQ(told[4]["user"], "bert");
+  EXPECT_EQ(told[4]["sequence"], 6);
+  EXPECT_EQ(told[5]["sequence"], 7);
   // The same holds if edits are rolled back.
   session->edit_applied(edit(8));
   auto unsaved = edit(8);
@@ -513,8 +521,9 @@ TEST_F(Live, with_many_people_the_edits_of_a_layer_are_told_together) {
   session->edits_unsaved({unsaved}, {});
   socket->later.back()();
   told = socket->of("layer");
-  ASSERT_EQ(told.size(), 5u);
-  EXPECT_EQ(told[4]["sequence"], 3);
+  ASSERT_EQ(told.size(), 8u);
+  EXPECT_EQ(told[6]["sequence"], 8);
+  EXPECT_EQ(told[7]["sequence"], 3);
 }
 
 TEST_F(Live, bad_messages_name_the_field_and_the_connection_lives_on) {

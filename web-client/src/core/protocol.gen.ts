@@ -995,7 +995,7 @@ export interface Reviewed {
   reason?: ReviewReason;
 }
 
-/** A layer was created, changed, deleted or edited. `layer` is present if the layer was created or changed. If it was edited, `sequence` is present. `provisional` is also present if the edit waits for review, and `review` if the edit is a decision about other edits. */
+/** A layer was created, changed, deleted or edited. `layer` is present if the layer was created or changed. If it was edited, `sequence` is present. If many people work on the model, one event can stand for several edits of one user in one layer: `sequence` is then that of the newest. `provisional` is also present if one of the edits waits for review, and `review` if the edit is a decision about other edits. */
 export interface LayerEvent {
   op: "layer";
   event: "created" | "changed" | "deleted" | "edited";

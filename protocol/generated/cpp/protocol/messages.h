@@ -1242,7 +1242,7 @@ std::string_view name(LayerEventEvent value);
 void read(const nlohmann::json& json, LayerEventEvent& value);
 nlohmann::json to_json(const LayerEventEvent& value);
 
-// A layer was created, changed, deleted or edited. `layer` is present if the layer was created or changed. If it was edited, `sequence` is present. `provisional` is also present if the edit waits for review, and `review` if the edit is a decision about other edits.
+// A layer was created, changed, deleted or edited. `layer` is present if the layer was created or changed. If it was edited, `sequence` is present. If many people work on the model, one event can stand for several edits of one user in one layer: `sequence` is then that of the newest. `provisional` is also present if one of the edits waits for review, and `review` if the edit is a decision about other edits.
 struct LayerEvent {
   static constexpr std::string_view kOp = "layer";
   LayerEventEvent event{};
