@@ -529,10 +529,11 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
 
   pending_.push_back({event, std::move(computed.changes), std::move(provisional_before),
                       sequence_before, std::move(item.saved), item.trace, false});
-  if (not_saving_) refuse_pending(*not_saving_);
   submit(std::move(entry), pending_.back());
   // The author and the journal do not wait for hundreds of messages to others.
   host_->edit_applied(event);
+  // After the event, whose author it would otherwise not recognize.
+  if (not_saving_) refuse_pending(*not_saving_);
 }
 
 // Passes a pending edit to the writer. After a failure, no edit is written before the rollback.
