@@ -422,6 +422,14 @@ void Viewer::step() {
         const auto viewer = self.lock();
         return viewer ? viewer->late_changes(ticket) : std::vector<render::FrameRequest::Box>();
       });
+  if (acted_meanwhile()) leave_onlookers();
+}
+
+// Returns whether the user acted after the request of an onlooker's draw was made. `acts` may have
+// found no waiting request, because the renderer did not have it yet.
+bool Viewer::acted_meanwhile() {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->waits_as_onlooker && Clock::now() - impl_->last_act < kActsFor;
 }
 
 std::vector<render::FrameRequest::Box> Viewer::late_changes(std::uint64_t ticket) {
@@ -451,6 +459,7 @@ void Viewer::on_failed(std::uint64_t ticket, const Error& problem) {
     if (impl_->closed ||
         !(refused ? impl_->flow.on_refused(ticket) : impl_->flow.on_failed(ticket)))
       return;
+    impl_->waits_as_onlooker = false;
   }
   if (is_superseded(problem)) return step();
   if (refused) {

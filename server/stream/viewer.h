@@ -92,6 +92,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void encode_next();
   void on_encoded(const Jpegs& jpegs, double encode_ms);
   void leave_onlookers();
+  bool acted_meanwhile();
   void wait_for_quiet();
   void wait_for_rest();
   bool waits_until(std::chrono::steady_clock::time_point time, bool Impl::*timer_runs,
