@@ -185,7 +185,7 @@ void OpenParticipant::ack(std::uint32_t view_id, std::uint64_t frame) {
 }
 
 void OpenParticipant::edits() {
-  has_edited_ = true;
+  last_edit_ = Clock::now();
   std::lock_guard lock(mutex_);
   for (auto& [id, view] : views_) view.viewer->acts();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -38,7 +39,8 @@ class OpenParticipant final : public Participant {
   Listener* listener() const { return listener_; }
   const std::string& user() const { return who_.user; }
   Role role() const { return who_.role; }  // determines the visible layers and columns
-  bool has_edited() const { return has_edited_; }
+  using Clock = std::chrono::steady_clock;
+  bool has_edited_since(Clock::time_point time) const { return last_edit_.load() >= time; }
   Presence presence() const;  // without `following`, which the room sets
   // Called by the room.
   void content_changed(const Layer& layer, const std::optional<render::FrameRequest::Box>& box,
@@ -92,7 +94,7 @@ class OpenParticipant final : public Participant {
   std::optional<Camera> camera_;  // camera of view 0 without its section
   bool leading_ = false;
   bool told_moved_ = false;
-  std::atomic<bool> has_edited_ = false;
+  std::atomic<Clock::time_point> last_edit_ = Clock::time_point::min();
 };
 
 }  // namespace strata::room

@@ -2,11 +2,17 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <chrono>
 #include <utility>
 
 #include "room/open/open_participant.h"
 
 namespace strata::room {
+namespace {
+
+constexpr std::chrono::seconds kEditsFor{2};
+
+}  // namespace
 
 std::unique_ptr<Participant> OpenRoom::ParticipantsPart::join(Author who, Portrait portrait,
                                                               Listener* listener,
@@ -88,11 +94,12 @@ void OpenRoom::ParticipantsPart::content_changed(
     const Layer& layer, const std::optional<render::FrameRequest::Box>& box,
     std::int64_t sequence) {
   std::lock_guard lock(mutex_);
-  // First the people who edit, so that the GPU does not begin a frame for somebody else before it
-  // knows of the author's.
+  // First the people who edit now, so that the GPU does not begin a frame for somebody else before
+  // it knows of the author's. After a workshop, everybody has edited at some time.
+  const auto lately = OpenParticipant::Clock::now() - kEditsFor;
   std::vector<OpenParticipant*> onlookers;
   for (OpenParticipant* each : here_)
-    if (each->has_edited())
+    if (each->has_edited_since(lately))
       each->content_changed(layer, box, sequence);
     else
       onlookers.push_back(each);
