@@ -16,8 +16,8 @@ namespace strata::stream {
 //    they were drawn.
 // 2. At most one draw is requested, and at most `window` frames are drawn but not acknowledged.
 //    Until an acknowledgment arrives, changes are only kept, and are drawn later. A draw may wait
-//    long for its turn. When it begins, it takes in the changes that arrived since then
-//    (`on_begun`), so the wait for a turn is not followed by a second one.
+//    long for its turn. Just before its pixels are shaded, it takes in the changes that arrived
+//    since the request (`on_begun`), so the wait for a turn is not followed by a second one.
 // 3. All changes are eventually drawn, because a failed draw returns its changes.
 // 4. Without a change, nothing is drawn. A camera that equals the current one only changes the
 //    camera number of later frames.
