@@ -25,14 +25,25 @@ void inherit(FrameRequest& request, const FrameRequest& other) {
   for (const auto& box : *other.changed) add_box(*request.changed, box, kMaxBoxes);
 }
 
-// Requests for the same picture have the same hash. Views rarely have equal cameras, so the camera
-// and the model suffice.
+// Requests for the same picture have the same hash. Besides the camera, it contains what differs
+// between people with the same saved view: the size of the window, layers and palettes.
 std::size_t hash_of(const FrameRequest& request) {
   std::size_t hash = std::hash<ModelHandle>()(request.model);
-  const auto add = [&](double value) { hash = hash * 1099511628211u ^ std::hash<double>()(value); };
-  for (glm::length_t column = 0; column < 4; ++column)
-    for (glm::length_t row = 0; row < 4; ++row) add(request.camera.view[column][row]);
+  const auto add = [&]<class Value>(const Value& value) {
+    hash = hash * 1099511628211u ^ std::hash<Value>()(value);
+  };
+  for (const glm::dmat4& matrix : {request.camera.view, request.camera.projection})
+    for (glm::length_t column = 0; column < 4; ++column)
+      for (glm::length_t row = 0; row < 4; ++row) add(matrix[column][row]);
   add(request.width);
+  add(request.height);
+  add(request.moving);
+  add(request.samples);
+  for (const LayerStyle& style : request.style.layers) {
+    add(style.layer);
+    add(style.palette.get());
+    add(style.opacity);
+  }
   return hash;
 }
 

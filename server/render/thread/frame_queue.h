@@ -52,8 +52,9 @@ bool same_picture(const FrameRequest& a, const FrameRequest& b);
 //    Only a few of them are in progress at a time. Between their drawing steps, smaller frames
 //    whose turns come first can be drawn.
 //
-// The GPU thread asks for a rectangle before each of its steps, so this takes the same time for one
-// waiting view and for a thousand: the frames are sorted by their turns and found by their content.
+// The GPU thread asks for a rectangle before each of its steps, so this must be fast for a thousand
+// waiting views: the frames are sorted by their turns and found by their content. Only whole frames
+// whose turns precede those in progress are skipped one by one.
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t max_askers) : max_askers_(max_askers) {}
