@@ -188,6 +188,49 @@ TEST_F(Parts, a_painter_who_has_lost_the_buffers_gets_them_back_and_keeps_them) 
   EXPECT_NE(renderer_.draw(request).rects.at(0), kWhole);
 }
 
+// Draws a request whose changes arrive while it waits: they are known when the frame asks for them.
+struct LateDraw {
+  render::Frame frame;
+  int asked = 0;
+};
+LateDraw draw_with_late(render::Renderer& renderer, const render::FrameRequest& request,
+                        const std::vector<Box>& late) {
+  // The callback runs on the GPU thread, before the answer.
+  const auto asked = std::make_shared<int>(0);
+  const auto drawn = await<render::SharedFrame>([&](auto done) {
+    renderer.draw(request, std::move(done), [asked, late] {
+      ++*asked;
+      return late;
+    });
+  });
+  EXPECT_TRUE(drawn.has_value());
+  return {drawn ? **drawn : render::Frame(), *asked};
+}
+
+TEST_F(Parts, a_frame_shows_the_changes_that_arrived_while_it_waited) {
+  for (const bool has_buffers : {true, false}) {
+    SCOPED_TRACE(has_buffers);
+    auto request = request_from({1.2, 1.0, 2.4});
+    auto picture = renderer_.draw(request);
+    if (!has_buffers) take_buffers();
+    request.changed = {paint(request.camera, 0.41, 0.38, 9, has_buffers ? kOther : kHatched)};
+    const Box late = paint(request.camera, 0.625, 0.625, 9, has_buffers ? kOutlined : kDotted);
+    const auto part = draw_with_late(renderer_.get(), request, {late});
+    EXPECT_EQ(part.asked, 1);
+    EXPECT_EQ(part.frame.rects.size(), 2u) << "one rectangle for the late change";
+    put(picture, part.frame);
+    request.changed.reset();
+    const auto whole = draw_with_late(renderer_.get(), request, {late});
+    EXPECT_EQ(whole.asked, 1) << "the requester learns that the frame shows the change";
+    EXPECT_EQ(whole.frame.rects.at(0), kWhole);
+    EXPECT_EQ(picture.pixels, whole.frame.pixels);
+    // Only the late change is drawn if the request itself has none on the screen.
+    request.changed.emplace();
+    EXPECT_EQ(draw_with_late(renderer_.get(), request, {late}).frame.rects.size(), 1u);
+    renderer_->remove_view(request.view);
+  }
+}
+
 // So many clusters are culled by the depth of the nearer ones, which is that of another view
 // outside the part.
 class PartsOfManyClusters : public Parts {
