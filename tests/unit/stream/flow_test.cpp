@@ -517,8 +517,9 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
     const int window = 1 + roll(3);
     FlowControl flow = ready(window);
     std::optional<FlowControl::Draw> out;
-    std::set<int> unseen;  // edits that no sent frame shows
-    std::set<int> in_out;  // unseen edits that precede the draw
+    std::set<int> unseen;      // edits that no sent frame shows
+    std::set<int> in_out;      // unseen edits that precede the draw
+    std::set<int> everywhere;  // edits of the whole surface, which no rectangle shows
     std::uint64_t sent = 0, acked = 0, camera_seq = 0;
     Camera newest = camera_at(0), shown;
     bool shown_still = false;
@@ -526,7 +527,7 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
 
     auto draw_done = [&](int what) {
       if (what == 0) {
-        ASSERT_TRUE(flow.on_failed(out->ticket));
+        ASSERT_TRUE(roll(2) == 0 ? flow.on_refused(out->ticket) : flow.on_failed(out->ticket));
       } else {
         const auto number = flow.on_drawn(out->ticket, true);
         ASSERT_TRUE(number);
@@ -534,9 +535,10 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
         for (int one : in_out) {
           const bool covered =
               !out->changed ||
-              std::any_of(out->changed->begin(), out->changed->end(), [&](const Box& box) {
-                return box.min.x <= float(one) && box.max.x >= float(one + 1);
-              });
+              (!everywhere.contains(one) &&
+               std::any_of(out->changed->begin(), out->changed->end(), [&](const Box& box) {
+                 return box.min.x <= float(one) && box.max.x >= float(one + 1);
+               }));
           if (covered) unseen.erase(one);
         }
         if (!out->changed) {
@@ -561,7 +563,7 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
     };
 
     for (int step = 0; step < 200; ++step) {
-      switch (roll(8)) {
+      switch (roll(11)) {
         case 0:
           newest = camera_at(roll(4));
           flow.on_camera(++camera_seq, newest, true);
@@ -588,11 +590,23 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
             if (out->changed) out->changed->push_back(late);
           in_out = unseen;
           break;
+        case 7:
+          unseen.insert(edit);
+          everywhere.insert(edit);
+          flow.on_change_everywhere(edit);
+          ++edit;
+          break;
+        case 8:
+          if (roll(4) == 0) flow.on_style();
+          break;
         default: break;
       }
       start();
       if (HasFatalFailure()) return;
     }
+    // A rejected draw waits for a change.
+    unseen.insert(edit);
+    flow.on_change(box_at(float(edit)), edit);
     flow.on_camera(++camera_seq, newest, true);
     flow.on_quiet();
     for (int i = 0; i < 20; ++i) {
