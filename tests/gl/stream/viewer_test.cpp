@@ -309,8 +309,8 @@ TEST_F(StreamViewer, edits_far_apart_are_one_frame_of_small_rectangles) {
   std::vector<render::StrokeOutcome> outcomes;
   for (const double x : {315.0, 645.0})
     outcomes.push_back(renderer_.paint(layer_, test::dab(large, x, 360, 12, 2)));
-  // The GPU is busy. The first change is requested immediately. All later changes are then
-  // requested together.
+  // The GPU is busy. The first change is requested immediately. Its frame takes in all later
+  // changes, because it still waits when they come.
   renderer_->run_on_gpu_thread_for_test([&] {
     view->changed({outcomes[0].written_min, outcomes[0].written_max}, 41);
     for (const auto& outcome : outcomes)
@@ -318,6 +318,7 @@ TEST_F(StreamViewer, edits_far_apart_are_one_frame_of_small_rectangles) {
   });
   const auto last =
       client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 42; }, first.frame);
+  EXPECT_EQ(last.frame, first.frame + 1) << "no frame shows only the first change";
   const auto rectangles = client.rectangles_of(last.frame);
   ASSERT_EQ(rectangles.size(), 2u);
   const auto picture = client.picture(), fresh = fresh_picture(large);
