@@ -106,7 +106,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
 // gets the served time of the last turn in the new half.
 void FrameQueue::enter_half(View& state, bool acting, bool waited) {
   Half& to = half(acting);
-  if (to.under_way == 0 && turns(acting).empty()) to.served_ms = std::max(to.served_ms, now_ms_);
+  if (to.under_way == 0 && sorted(acting).empty()) to.served_ms = std::max(to.served_ms, now_ms_);
   if (std::exchange(state.acting, acting) != acting)
     state.served_ms = to.now_ms;
   else if (!state.under_way && !waited)
@@ -125,7 +125,7 @@ void FrameQueue::sort(Place place) {
   for (const auto& asker : task.askers)
     if (const View& state = views_.at(asker.view); state.acting == task.turn.acting)
       place->turn_ms = std::min(place->turn_ms, state.served_ms);
-  turns(task.turn.acting).insert(place);
+  turns(task).insert(place);
 }
 
 void FrameQueue::leave(ViewHandle view, View& state) {
@@ -229,12 +229,46 @@ FrameTask FrameQueue::take_at(Place place, ViewHandle drawer) {
   return task;
 }
 
+// Returns the frame of a half whose turn is first: of its rectangles, or also of its whole frames.
+std::optional<FrameQueue::Place> FrameQueue::first(bool acting, bool with_wholes) {
+  const Sorted& frames = sorted(acting);
+  return earlier(frames.parts, frames.parts.begin(), frames.wholes,
+                 with_wholes ? frames.wholes.begin() : frames.wholes.end());
+}
+
+// Like `first`, for the turns after that of `place`.
+std::optional<FrameQueue::Place> FrameQueue::after(Place place, bool acting, bool with_wholes) {
+  const Sorted& frames = sorted(acting);
+  return earlier(frames.parts, frames.parts.upper_bound(place), frames.wholes,
+                 with_wholes ? frames.wholes.upper_bound(place) : frames.wholes.end());
+}
+
+std::optional<FrameQueue::Place> FrameQueue::earlier(const Turns& a, Turns::const_iterator in_a,
+                                                     const Turns& b, Turns::const_iterator in_b) {
+  if (in_a == a.end() && in_b == b.end()) return std::nullopt;
+  if (in_b == b.end() || (in_a != a.end() && ByTurn()(*in_a, *in_b))) return *in_a;
+  return *in_b;
+}
+
+// Returns the next turn of a half, of a frame whose requesters have no other frame in progress.
+std::optional<double> FrameQueue::next_turn_ms(bool acting) const {
+  std::optional<double> next_ms;
+  const Sorted& frames = turns_[acting ? 0 : 1];
+  for (const Turns* turns : {&frames.wholes, &frames.parts}) {
+    const auto found = std::ranges::find_if(
+        *turns, [&](const Place& place) { return !is_under_way(place->task); });
+    if (found != turns->end())
+      next_ms = std::min(next_ms.value_or((*found)->turn_ms), (*found)->turn_ms);
+  }
+  return next_ms;
+}
+
 std::optional<FrameTask> FrameQueue::take() {
   std::lock_guard lock(mutex_);
   for (const bool acting : {acting_are_next(), !acting_are_next()})
-    for (const Place place : turns(acting)) {
-      if (place->task.request.large && large_under_way_ >= kMaxLarge) continue;
-      if (const auto drawer = drawer_of(*place)) return take_at(place, *drawer);
+    for (auto next = first(acting, true); next; next = after(*next, acting, true)) {
+      if ((*next)->task.request.large && large_under_way_ >= kMaxLarge) continue;
+      if (const auto drawer = drawer_of(**next)) return take_at(*next, *drawer);
     }
   return std::nullopt;
 }
@@ -250,11 +284,11 @@ std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> 
   for (const bool acting : {acting_are_next(), !acting_are_next()}) {
     // The next turn of this half. A rectangle must not use a whole frame's turn to precede the
     // other half. Otherwise rectangles alone could use all the time of their half.
-    std::optional<double> next_ms;
-    for (const Place place : turns(acting)) {
+    const auto next_ms = next_turn_ms(acting);
+    for (auto next = first(acting, only_large); next; next = after(*next, acting, only_large)) {
+      const Place place = *next;
       if (is_under_way(place->task)) continue;
       const auto turn = turn_of(*place);
-      if (!next_ms) next_ms = turn.ms;
       // No later turn of this half precedes the frames in progress if this turn does not.
       if (!std::ranges::all_of(under_way, [&](const FrameTask::Turn& one) {
             return is_before(turn, one) && (turn.acting == one.acting || turn.ms <= *next_ms);
@@ -320,7 +354,7 @@ std::vector<FrameTask> FrameQueue::take_all() {
   std::lock_guard lock(mutex_);
   std::vector<FrameTask> tasks;
   for (Waiting& waiting : waiting_) tasks.push_back(std::move(waiting.task));
-  for (Turns& turns : turns_) turns.clear();
+  turns_ = {};
   by_content_.clear();
   waiting_.clear();
   drew_.clear();

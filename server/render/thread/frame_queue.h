@@ -52,9 +52,8 @@ bool same_picture(const FrameRequest& a, const FrameRequest& b);
 //    Only a few of them are in progress at a time. Between their drawing steps, smaller frames
 //    whose turns come first can be drawn.
 //
-// The GPU thread asks for a rectangle before each of its steps, so this must be fast for a thousand
-// waiting views: the frames are sorted by their turns and found by their content. Only whole frames
-// whose turns precede those in progress are skipped one by one.
+// The GPU thread asks for a rectangle before each of its steps, so this takes the same time for one
+// waiting view and for a thousand: the frames are sorted by their turns and found by their content.
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t max_askers) : max_askers_(max_askers) {}
@@ -112,11 +111,20 @@ class FrameQueue {
     }
   };
   using Turns = std::set<Place, ByTurn>;
+  // The frames of one half. Rectangles are searched without a look at each whole frame.
+  struct Sorted {
+    Turns wholes, parts;
+    bool empty() const { return wholes.empty() && parts.empty(); }
+  };
 
   void leave(ViewHandle view, View& state);
   Half& half(bool acting) { return halves_[acting ? 0 : 1]; }
   const Half& half(bool acting) const { return halves_[acting ? 0 : 1]; }
-  Turns& turns(bool acting) { return turns_[acting ? 0 : 1]; }
+  Sorted& sorted(bool acting) { return turns_[acting ? 0 : 1]; }
+  Turns& turns(const FrameTask& task) {
+    Sorted& frames = sorted(task.turn.acting);
+    return task.request.changed ? frames.parts : frames.wholes;
+  }
   void enter_half(View& state, bool acting, bool waited);
   bool is_acting(const FrameTask& task) const;     // any requester acts
   bool is_under_way(const FrameTask& task) const;  // a requester has another frame in progress
@@ -127,7 +135,7 @@ class FrameQueue {
   }
   // Sorts a frame again after a change to its requesters or their served times.
   void sort(Place place);
-  void remove_turn(Place place) { turns(place->task.turn.acting).erase(place); }
+  void remove_turn(Place place) { turns(place->task).erase(place); }
   void erase(Place place);  // from `waiting_` and the indexes
   // Returns the waiting frame with the same content, and the same choice of whole frame or part.
   std::optional<Place> find_same(const FrameRequest& request, std::size_t hash) const;
@@ -136,12 +144,17 @@ class FrameQueue {
   void erase_view(ViewHandle view);
   // Returns the view that will draw the frame, or nothing while that view has a frame in progress.
   std::optional<ViewHandle> drawer_of(const Waiting& waiting) const;
+  std::optional<Place> first(bool acting, bool with_wholes);
+  std::optional<Place> after(Place place, bool acting, bool with_wholes);
+  static std::optional<Place> earlier(const Turns& a, Turns::const_iterator in_a, const Turns& b,
+                                      Turns::const_iterator in_b);
+  std::optional<double> next_turn_ms(bool acting) const;
   FrameTask take_at(Place place, ViewHandle drawer);
 
   const std::size_t max_askers_;
   std::mutex mutex_;
-  std::list<Waiting> waiting_;  // oldest first
-  std::array<Turns, 2> turns_;  // the frames of `waiting_`: of acting users, of onlookers
+  std::list<Waiting> waiting_;   // oldest first
+  std::array<Sorted, 2> turns_;  // the frames of `waiting_`: of acting users, of onlookers
   std::unordered_multimap<std::size_t, Place> by_content_;  // the frames of `waiting_`
   std::unordered_map<ViewHandle, View> views_;
   std::unordered_multimap<std::size_t, ViewHandle> drew_;  // the views by `View::drew`
