@@ -1547,7 +1547,9 @@ CREATE TABLE public.edit_batches (
     edit bigint NOT NULL,
     sequence bigint NOT NULL,
     area_m2 double precision NOT NULL,
-    texels_changed integer NOT NULL
+    texels_changed integer NOT NULL,
+    user_name text,
+    provisional boolean
 );
 
 CREATE TABLE public.file_store (
@@ -1879,6 +1881,11 @@ ALTER TABLE public.snapshots ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     CACHE 1
 );
 
+CREATE TABLE public.thinned_layers (
+    layer_id bigint NOT NULL,
+    count bigint NOT NULL
+);
+
 CREATE TABLE public.thumbnails (
     sha256 bytea NOT NULL,
     side integer NOT NULL,
@@ -2190,6 +2197,9 @@ ALTER TABLE ONLY public.table_changes
 
 ALTER TABLE ONLY public.table_edits
     ADD CONSTRAINT table_edits_pkey PRIMARY KEY (table_id, sequence);
+
+ALTER TABLE ONLY public.thinned_layers
+    ADD CONSTRAINT thinned_layers_pkey PRIMARY KEY (layer_id);
 
 ALTER TABLE ONLY public.thumbnails
     ADD CONSTRAINT thumbnails_pkey PRIMARY KEY (sha256, side);
@@ -2656,6 +2666,9 @@ ALTER TABLE ONLY public.table_changes
 
 ALTER TABLE ONLY public.table_edits
     ADD CONSTRAINT table_edits_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.thinned_layers
+    ADD CONSTRAINT thinned_layers_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.thumbnails
     ADD CONSTRAINT thumbnails_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;

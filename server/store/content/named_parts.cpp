@@ -1,5 +1,6 @@
 #include "store/content/named_parts.h"
 
+#include "store/journal/kept_states.h"
 #include "store/pg/pg_row.h"
 #include "store/store_impl.h"
 
@@ -95,6 +96,10 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
       return fail(ErrorCode::conflict, "Too many " + std::string(kind_.table),
                   "A model can have at most " + std::to_string(kind_.most) + " " + kind_.table +
                       ". Delete some first.");
+    // A later thinning of the journal sees the snapshot, because it locks the model, too.
+    if (kind_.table == kSnapshots.table)
+      STRATA_TRY(
+          check_kept(connection, part.model_id, part.content.value("sequence", std::int64_t{0})));
     const std::string taken = sql("SELECT slug FROM TABLE WHERE slug LIKE $1 AND model_id = $2");
     const std::string insert = sql(
         "INSERT INTO TABLE (model_id, slug, name, text, content, user_name) VALUES ($1, $2, $3, $4, $5, $6) "

@@ -1,4 +1,5 @@
 #include "store/journal/journal_reads.h"
+#include "store/journal/kept_states.h"
 #include "store/pg/pg_row.h"
 #include "store/pg/sql.h"
 #include "store/store_impl.h"
@@ -17,13 +18,14 @@ constexpr auto kListColumns = sql(
     "THEN e.record - '{path,widths}'::text[] ELSE e.record END, e.answer, ",
     kStateColumns);
 
-// The edits of model $1 with the ids $2. A batch of a merged edit keeps its response.
+// The edits of model $1 with the ids $2. A batch of a merged edit keeps its response, and so does
+// an edit in a checkpoint, which also keeps its author.
 constexpr auto kWithIds = sql(
     "SELECT ", kEditColumns,
     "WHERE e.model_id = $1 AND e.id = any($2) AND e.first_sequence IS NULL UNION ALL "
-    "SELECT b.sequence, b.id, e.stroke, e.user_name, e.op, e.record, jsonb_strip_nulls(jsonb_build_object("
+    "SELECT b.sequence, b.id, e.stroke, coalesce(b.user_name, e.user_name), e.op, e.record, jsonb_strip_nulls(jsonb_build_object("
     "'sequence', b.sequence, 'texels_changed', b.texels_changed, 'area_m2', b.area_m2, "
-    "'provisional', e.answer -> 'provisional')), ",
+    "'provisional', CASE WHEN b.provisional IS NULL THEN e.answer -> 'provisional' WHEN b.provisional THEN 'true' END)), ",
     kStateColumns,
     "JOIN edit_batches b ON b.model_id = e.model_id AND b.edit = e.sequence WHERE b.model_id = $1 AND b.id = any($2)");
 
@@ -152,7 +154,9 @@ Result<std::int64_t> Journal::sequence_at(ModelId model_id, const std::string& u
         "SELECT coalesce(max(sequence), 0) FROM (SELECT sequence FROM edits WHERE model_id = $1 "
         "AND time < date_trunc('milliseconds', $2::timestamptz) + interval '1 millisecond' ORDER BY time DESC LIMIT 1000) e",
         Params().id(model_id).text(utc)));
-    return row.integer(0, 0);
+    // Within a checkpoint, the layer has the state before it.
+    const auto kept = STRATA_TRY(kept_around(connection, model_id, row.integer(0, 0)));
+    return kept ? kept->before : row.integer(0, 0);
   });
 }
 
@@ -182,13 +186,19 @@ Result<void> rename_in_journal(PgConnection& connection, const std::string& name
                                 mention_renamed("record ->> 'reason'", "1000"),
                                 ")) WHERE op IN ('accept', 'reject', 'reopen') AND ",
                                 mentions_them("record ->> 'reason'"));
-  for (const char* statement :
-       {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
-        // Decisions of a review contain the author of the edits, and the reason as a text. Other
-        // records are not searched, because they may be large.
-        "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) "
-        "WHERE op IN ('accept', 'reject', 'reopen') AND record ->> 'user' = $1",
-        kReasons.c_str()})
+  for (
+      const char* statement :
+      {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
+       "UPDATE edit_batches SET user_name = $2 WHERE user_name = $1",
+       // A checkpoint contains the authors of its edits.
+       "UPDATE edits SET record = jsonb_set(record, '{people}', (SELECT jsonb_agg(CASE WHEN p ->> 'user' = $1 "
+       "THEN jsonb_set(p, '{user}', to_jsonb($2::text)) ELSE p END) FROM jsonb_array_elements(record -> 'people') p)) "
+       "WHERE op = 'checkpoint' AND record -> 'people' @> jsonb_build_array(jsonb_build_object('user', $1::text))",
+       // Decisions of a review contain the author of the edits, and the reason as a text. Other
+       // records are not searched, because they may be large.
+       "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) "
+       "WHERE op IN ('accept', 'reject', 'reopen') AND record ->> 'user' = $1",
+       kReasons.c_str()})
     STRATA_TRY(connection.query(statement, Params().text(name).text(former)));
   return {};
 }

@@ -66,7 +66,8 @@ struct JournalEntry {
   TraceId trace{};                   // of the edit, for the log; not stored
 };
 
-// A row of the history of a layer (GET …/edits), which is sorted newest first.
+// A row of the history of a layer (GET …/edits), which is sorted newest first. A row with the op
+// "checkpoint" has no user; its record has the authors of its edits (journal_thinner.h).
 struct JournalRow {
   std::int64_t sequence = 0;
   Uuid id, stroke;

@@ -1,6 +1,7 @@
 #include "store/journal/journal_commit.h"
 
 #include <map>
+#include <optional>
 #include <set>
 
 #include "store/journal/tile_sums.h"
@@ -79,6 +80,34 @@ std::size_t advance_layers(std::span<const JournalEntry* const> entries, Stateme
        "AS v (id, model_id, last) WHERE l.id = v.id AND l.model_id = v.model_id",
        std::move(params)});
   return lasts.size();
+}
+
+// A room reads the edits that an undo or a review changes before the undo is committed. In the
+// meantime, they may have become part of a checkpoint (journal_thinner.h). Adds a query that
+// returns a row in this case. Returns its place, or nothing if no entry changes other edits.
+std::optional<std::size_t> find_thinned(std::span<const JournalEntry* const> entries,
+                                        Statements& out) {
+  PgArray layers(oid::kInt8), sequences(oid::kInt8);
+  const auto add = [&](const JournalEntry& entry, const std::vector<std::int64_t>& edits) {
+    for (const std::int64_t sequence : edits) {
+      layers.add(entry.layer_id);
+      sequences.add(sequence);
+    }
+  };
+  for (const JournalEntry* entry : entries) {
+    add(*entry, entry->disable);
+    add(*entry, entry->enable);
+    if (entry->reviewed) add(*entry, entry->reviewed->edits);
+  }
+  if (sequences.size() == 0) return std::nullopt;
+  Params params;
+  params.array(layers).array(sequences);
+  out.push_back(
+      {"SELECT 1 FROM unnest($1::bigint[], $2::bigint[]) AS v (layer_id, sequence) CROSS JOIN LATERAL "
+       "(SELECT op, first_sequence FROM edits WHERE layer_id = v.layer_id AND sequence >= v.sequence ORDER BY sequence LIMIT 1) e "
+       "WHERE e.op = 'checkpoint' AND e.first_sequence <= v.sequence LIMIT 1",
+       std::move(params)});
+  return out.size() - 1;
 }
 
 void insert_edits(std::span<const JournalEntry* const> entries, Statements& out) {
@@ -207,6 +236,7 @@ tl::expected<void, CommitFailure> write_entries(PgConnection& connection,
   statements.push_back({"BEGIN", {}});
   advance_models(spans, statements);
   const std::size_t layer_count = advance_layers(entries, statements);
+  const auto thinned = find_thinned(entries, statements);
   insert_edits(entries, statements);
   insert_revisions(entries, statements);
   switch_edits(entries, statements);
@@ -225,6 +255,12 @@ tl::expected<void, CommitFailure> write_entries(PgConnection& connection,
     return never(
         {ErrorCode::conflict, "Layer was deleted",
          "Somebody deleted the layer in the meantime, so the server did not save the edit.", ""});
+  if (thinned && (*results)[*thinned].rows() > 0)
+    return never(
+        {ErrorCode::conflict, "Edits were thinned",
+         "An administrator has thinned the history of this model in the meantime, so these "
+         "edits can no longer be changed. Nothing changed.",
+         ""});
   if (auto committed = transaction.commit(); !committed) return failed(committed.error());
   return {};
 }

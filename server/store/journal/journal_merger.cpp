@@ -12,6 +12,7 @@
 #include "domain/layers/tile_segment.h"
 #include "store/cluster/schema_readers.h"
 #include "store/journal/journal_reads.h"
+#include "store/journal/journal_rewrite.h"
 #include "store/nodes/deposed.h"
 #include "store/pg/pg_row.h"
 #include "store/pg/pool.h"
@@ -22,12 +23,6 @@ namespace {
 constexpr int kListsAtOnce = 200;
 constexpr int kTilesAtOnce = 4;                    // packed in one transaction
 constexpr std::size_t kRevisionsUntilCount = 512;  // of a layer, until its tiles are counted again
-// A merge can wait. Painting must not wait for it, also not while the merge has locked the model
-// and waits for a row that a longer transaction has locked.
-constexpr PgLimits kMergeLimits{std::chrono::seconds(30), std::chrono::seconds(20),
-                                std::chrono::milliseconds(100)};
-
-using Statements = std::deque<PgConnection::Statement>;
 
 // The edits after $2, with their tiles as big-endian numbers. Only batches have traits.
 constexpr const char* kWindow =
@@ -43,48 +38,27 @@ constexpr const char* kWindow =
     "false) AS is_batch) b "
     "WHERE e.model_id = $1 AND e.sequence > $2 ORDER BY e.sequence LIMIT $3";
 
-std::vector<std::int16_t> read_tiles(Bytes bytes) {
-  std::vector<std::int16_t> tiles;
-  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2)
-    tiles.push_back(static_cast<std::int16_t>(bytes[i] << 8 | bytes[i + 1]));
-  return tiles;
-}
-
-std::int16_t number_of_tile(TileAddress tile) {
-  return static_cast<std::int16_t>(tile.y * 128 + tile.x);
-}
-
-PgArray array_of(std::span<const std::int64_t> numbers) {
-  PgArray array(oid::kInt8);
-  for (const std::int64_t number : numbers) array.add(number);
-  return array;
-}
-
 // --- the transaction
 
-// Begins a transaction that blocks edits only for a short time. The commit need not be on disk
-// immediately. The rows of the model and the layer are locked in the order of the journal writer,
-// so that the two cannot cause a deadlock. If the server hangs, the database ends the
-// transaction.
-void begin_fenced(ModelId model, std::int64_t epoch, LayerId layer, const std::string& type,
+// Begins a transaction that blocks edits only for a short time. The rows of the model and the layer
+// are locked in the order of the journal writer, so that the two cannot cause a deadlock.
+void begin_fenced(ModelId model, std::int64_t epoch, LayerId layer, const LayerState& state,
                   Statements& out) {
-  out.push_back({"BEGIN", {}});
-  out.push_back(
-      {"SELECT set_config('synchronous_commit', 'off', true), "
-       "set_config('idle_in_transaction_session_timeout', '3s', true)",
-       {}});
+  begin_rewrite(out);
   Params of_model, of_layer;
   of_model.id(model).integer(epoch);
   out.push_back(
       {"SELECT 1 FROM all_models WHERE id = $1 AND owner_epoch = $2 AND binned IS NULL FOR SHARE",
        std::move(of_model)});
-  of_layer.id(layer).id(model).text(type);
+  of_layer.id(layer).id(model).text(name(state.type));
   out.push_back(
       {"SELECT 1 FROM all_layers WHERE id = $1 AND model_id = $2 AND type = $3 AND NOT erasing "
        "FOR SHARE",
        std::move(of_layer)});
+  find_state(layer, state, out);
 }
-constexpr std::size_t kModelRow = 2, kLayerRow = 3, kFirstChange = 4;  // of the results
+// Places in the results.
+constexpr std::size_t kModelRow = 2, kLayerRow = 3, kStateRow = 4, kFirstChange = 5;
 
 // Returns `moved` if another server has the model, and otherwise `conflict`: the rows have changed
 // since they were read, so the merge is tried again later.
@@ -93,14 +67,6 @@ Result<void> not_merged(PgConnection& connection, ModelId model, std::int64_t ep
   if (deposed) return tl::unexpected(std::move(*deposed));
   return fail(ErrorCode::conflict, "Journal has changed",
               "The edits changed while the server merged them. It tries again later.");
-}
-
-// Returns the error of a statement, or `conflict` if another transaction had locked a row: the
-// merge is tried again later.
-Error failed_statement(PgConnection& connection, Error problem) {
-  if (connection.sqlstate() != "55P03") return problem;
-  return {ErrorCode::conflict, "Journal is locked",
-          "Another change has locked the journal. The server merges it later.", ""};
 }
 
 // Runs the statements, and commits if `is_complete(results)` is true. Otherwise the transaction has
@@ -113,18 +79,10 @@ Result<void> commit_if(PgConnection& connection, ModelId model, std::int64_t epo
     const auto results = connection.pipeline(statements);
     if (!results) return tl::unexpected(failed_statement(connection, results.error()));
     if ((*results)[kModelRow].rows() == 1 && (*results)[kLayerRow].rows() == 1 &&
-        is_complete(*results))
+        (*results)[kStateRow].rows() == 1 && is_complete(*results))
       return transaction.commit();
   }
   return not_merged(connection, model, epoch);
-}
-
-// One damaged row must not stop the merges of all later edits. Returns other errors, after which
-// the merge is tried again.
-Result<void> skip_if_damaged(const Error& problem, const std::string& what) {
-  if (problem.code != ErrorCode::internal) return tl::unexpected(problem);
-  log::warning("journal: " + what + " stay as they are: " + problem.detail);
-  return {};
 }
 
 // --- merging the edits of a stroke
@@ -262,11 +220,6 @@ class Joiner {
   JoinedRevisions joined_;
 };
 
-TileAddress address_of(const PgResult& row, int i) {
-  return {static_cast<std::uint16_t>(row.integer(i, 1)),
-          static_cast<std::uint16_t>(row.integer(i, 0))};
-}
-
 Result<JoinedRevisions> join_revisions(PgConnection& connection, LayerId layer, ValueType type,
                                        const PgArray& sequences) {
   Joiner joiner(type);
@@ -278,13 +231,6 @@ Result<JoinedRevisions> join_revisions(PgConnection& connection, LayerId layer, 
                           row.null(0, 3) ? std::nullopt : std::optional(row.bytes(0, 3)));
       }));
   return std::move(joiner).finish();
-}
-
-// Returns nothing if the layer was deleted.
-Result<std::optional<ValueType>> type_of(PgConnection& connection, LayerId layer) {
-  auto rows = STRATA_TRY(connection.query(
-      "SELECT type FROM all_layers WHERE id = $1 AND NOT erasing", Params().id(layer)));
-  return rows.rows() == 0 ? std::nullopt : parse_value_type(rows.text(0, 0));
 }
 
 void replace_edits(ModelId model, const std::vector<Batch>& batches, const MergedEdit& merged,
@@ -373,17 +319,11 @@ bool all_equal(const PgResult& removed, const PgResult& changed) {
 
 // --- packing the revisions of a tile
 
-struct Packed {
-  TileAddress tile;
-  std::int64_t first = 0, last = 0;
-  std::vector<std::int64_t> sequences;
-  std::vector<std::uint8_t> content;
-};
-
 // Makes a segment of the oldest revisions of a tile.
 // Returns nothing if the tile must not change.
-Result<std::optional<Packed>> pack_tile(PgConnection& connection, LayerId layer, ValueType type,
-                                        TileAddress tile, std::int64_t through) {
+Result<std::optional<PackedSegment>> pack_tile(PgConnection& connection, LayerId layer,
+                                               ValueType type, TileAddress tile,
+                                               std::int64_t through) {
   const auto of_tile = [&] {
     Params params;
     params.id(layer).integer(tile.y).integer(tile.x).integer(through);
@@ -413,22 +353,15 @@ Result<std::optional<Packed>> pack_tile(PgConnection& connection, LayerId layer,
       return std::nullopt;
     segment.entries.push_back({rows.integer(i, 0), std::move(revision)});
   }
-  auto content = encode_segment(segment);
-  if (!content) return std::nullopt;
   // The revisions are deleted only if the segment contains the same revisions.
-  const auto again = decode_segment(tile, type, *content);
-  if (!again || !(*again == segment)) return std::nullopt;
-  std::vector<std::int64_t> sequences;
-  for (const auto& entry : segment.entries) sequences.push_back(entry.sequence);
-  return Packed{tile, sequences.front(), sequences.back(), std::move(sequences),
-                std::move(*content)};
+  return pack(tile, type, segment);
 }
 
 // Returns a row if an edit has no list of its tiles. Without it, undo would not find the revisions
 // of the edit in segments.
-void find_unlisted(ModelId model, const std::vector<Packed>& packed, Statements& out) {
+void find_unlisted(ModelId model, const std::vector<PackedSegment>& packed, Statements& out) {
   PgArray sequences(oid::kInt8);
-  for (const Packed& segment : packed)
+  for (const PackedSegment& segment : packed)
     for (const std::int64_t sequence : segment.sequences) sequences.add(sequence);
   Params params;
   params.id(model).array(sequences);
@@ -437,28 +370,22 @@ void find_unlisted(ModelId model, const std::vector<Packed>& packed, Statements&
        std::move(params)});
 }
 
-void replace_by_segments(LayerId layer, const std::vector<Packed>& packed, Statements& out) {
-  PgArray ys(oid::kInt2), xs(oid::kInt2), firsts(oid::kInt8), lasts(oid::kInt8),
-      contents(oid::kBytea);
-  for (const Packed& segment : packed) {
+void replace_by_segments(LayerId layer, const std::vector<PackedSegment>& packed, Statements& out) {
+  PgArray ys(oid::kInt2), xs(oid::kInt2), firsts(oid::kInt8), lasts(oid::kInt8);
+  for (const PackedSegment& segment : packed) {
     ys.add_int2(static_cast<std::int16_t>(segment.tile.y));
     xs.add_int2(static_cast<std::int16_t>(segment.tile.x));
-    firsts.add(segment.first);
-    lasts.add(segment.last);
-    contents.add(Bytes(segment.content));
+    firsts.add(segment.sequences.front());
+    lasts.add(segment.sequences.back());
   }
-  Params remove, insert;
+  Params remove;
   remove.id(layer).array(ys).array(xs).array(firsts).array(lasts);
   out.push_back(
       {"DELETE FROM tile_revisions r USING unnest($2::smallint[], $3::smallint[], $4::bigint[], $5::bigint[]) "
        "AS v (y, x, first, last) WHERE r.layer_id = $1 AND r.tile_y = v.y AND r.tile_x = v.x "
        "AND r.sequence >= v.first AND r.sequence <= v.last",
        std::move(remove)});
-  insert.id(layer).array(ys).array(xs).array(firsts).array(lasts).array(contents);
-  out.push_back(
-      {"INSERT INTO tile_segments (layer_id, tile_y, tile_x, first_sequence, last_sequence, content) "
-       "SELECT $1, s.* FROM unnest($2::smallint[], $3::smallint[], $4::bigint[], $5::bigint[], $6::bytea[]) AS s",
-       std::move(insert)});
+  insert_segments(layer, packed, out);
 }
 
 }  // namespace
@@ -528,7 +455,7 @@ Result<JournalMerger::Window> JournalMerger::read_window(
         [&](const PgResult& row) -> Result<void> {
           window.edits.push_back({row.integer(0, 0), row.id<LayerId>(0, 1), row.uuid(0, 2),
                                   row.text(0, 3), row.time(0, 4), row.boolean(0, 5), row.text(0, 6),
-                                  read_tiles(row.bytes(0, 7)),
+                                  read_tile_numbers(row.bytes(0, 7)),
                                   static_cast<std::size_t>(row.integer(0, 8))});
           return {};
         }));
@@ -539,17 +466,17 @@ Result<JournalMerger::Window> JournalMerger::read_window(
 
 Result<std::optional<std::int64_t>> JournalMerger::merge_group(
     const Claim& claim, LayerId layer, const std::vector<std::int64_t>& sequences) {
-  auto lease = STRATA_TRY(journal_.pool_.acquire(kMergeLimits));
+  auto lease = STRATA_TRY(journal_.pool_.acquire(kRewriteLimits));
   PgConnection& connection = *lease;
   const PgArray all = array_of(sequences);
-  const auto type = STRATA_TRY(type_of(connection, layer));
-  if (!type) return std::nullopt;
+  const auto state = STRATA_TRY(state_of(connection, layer));
+  if (!state) return std::nullopt;
   const auto batches = STRATA_TRY(read_batches(connection, claim.model, all));
   // Somebody has deleted the layer.
   if (batches.size() != sequences.size()) return std::nullopt;
   const auto merged = join_batches(batches);
   if (!merged) return std::nullopt;
-  const auto revisions = join_revisions(connection, layer, *type, all);
+  const auto revisions = join_revisions(connection, layer, state->type, all);
   if (!revisions) {
     STRATA_TRY(skip_if_damaged(
         revisions.error(),
@@ -559,7 +486,7 @@ Result<std::optional<std::int64_t>> JournalMerger::merge_group(
   if (!revisions->can_merge) return std::nullopt;
 
   Statements statements;
-  begin_fenced(claim.model, claim.epoch, layer, std::string(name(*type)), statements);
+  begin_fenced(claim.model, claim.epoch, layer, *state, statements);
   replace_edits(claim.model, batches, *merged, *revisions, statements);
   insert_batches(claim.model, layer, batches, statements);
   replace_revisions(layer, all, sequences.back(), *revisions, statements);
@@ -586,28 +513,29 @@ Result<bool> JournalMerger::list_tiles(const Claim& claim, const Window& window,
          ++i)
       sequences.add(window.edits[i].sequence);
     if (!go_on()) return false;
-    STRATA_TRY(journal_.pool_.write_within(kMergeLimits, [&](PgConnection& connection) -> Result<void> {
-      STRATA_TRY(connection.query("SELECT set_config('synchronous_commit', 'off', true)"));
-      auto model =
-          connection.query("SELECT 1 FROM all_models WHERE id = $1 AND owner_epoch = $2 FOR SHARE",
-                           Params().id(claim.model).integer(claim.epoch));
-      if (!model) return tl::unexpected(failed_statement(connection, model.error()));
-      if (model->rows() == 0) return not_merged(connection, claim.model, claim.epoch);
-      auto listed = connection.query(
-          "UPDATE edits e SET tiles = ARRAY(SELECT (r.tile_y * 128 + r.tile_x)::smallint FROM tile_revisions r "
-          "WHERE r.layer_id = e.layer_id AND r.sequence = e.sequence ORDER BY r.tile_y, r.tile_x) "
-          "WHERE e.model_id = $1 AND e.sequence = any($2) AND e.tiles IS NULL",
-          Params().id(claim.model).array(sequences));
-      if (!listed) return tl::unexpected(failed_statement(connection, listed.error()));
-      return {};
-    }));
+    STRATA_TRY(
+        journal_.pool_.write_within(kRewriteLimits, [&](PgConnection& connection) -> Result<void> {
+          STRATA_TRY(connection.query("SELECT set_config('synchronous_commit', 'off', true)"));
+          auto model = connection.query(
+              "SELECT 1 FROM all_models WHERE id = $1 AND owner_epoch = $2 FOR SHARE",
+              Params().id(claim.model).integer(claim.epoch));
+          if (!model) return tl::unexpected(failed_statement(connection, model.error()));
+          if (model->rows() == 0) return not_merged(connection, claim.model, claim.epoch);
+          auto listed = connection.query(
+              "UPDATE edits e SET tiles = ARRAY(SELECT (r.tile_y * 128 + r.tile_x)::smallint FROM tile_revisions r "
+              "WHERE r.layer_id = e.layer_id AND r.sequence = e.sequence ORDER BY r.tile_y, r.tile_x) "
+              "WHERE e.model_id = $1 AND e.sequence = any($2) AND e.tiles IS NULL",
+              Params().id(claim.model).array(sequences));
+          if (!listed) return tl::unexpected(failed_statement(connection, listed.error()));
+          return {};
+        }));
   }
   return true;
 }
 
 // Marks the edits up to `through`. They are not read again, and their revisions can be packed.
 Result<void> JournalMerger::advance(const Claim& claim, std::int64_t through) {
-  return journal_.pool_.write_within(kMergeLimits, [&](PgConnection& connection) -> Result<void> {
+  return journal_.pool_.write_within(kRewriteLimits, [&](PgConnection& connection) -> Result<void> {
     auto done = connection.query(
         "WITH claim AS (SELECT id FROM all_models WHERE id = $1 AND owner_epoch = $2 FOR SHARE) "
         "INSERT INTO merged_journals (model_id, sequence) SELECT id, $3 FROM claim ON CONFLICT (model_id) "
@@ -651,13 +579,13 @@ Result<std::int64_t> JournalMerger::pack_layer(const Claim& claim, LayerId layer
 Result<std::int64_t> JournalMerger::pack_tiles(const Claim& claim, LayerId layer,
                                                std::int64_t through,
                                                const std::vector<TileAddress>& tiles) {
-  auto lease = STRATA_TRY(journal_.pool_.acquire(kMergeLimits));
+  auto lease = STRATA_TRY(journal_.pool_.acquire(kRewriteLimits));
   PgConnection& connection = *lease;
-  const auto type = STRATA_TRY(type_of(connection, layer));
-  if (!type) return 0;
-  std::vector<Packed> packed;
+  const auto state = STRATA_TRY(state_of(connection, layer));
+  if (!state) return 0;
+  std::vector<PackedSegment> packed;
   for (const TileAddress tile : tiles) {
-    auto segment = pack_tile(connection, layer, *type, tile, through);
+    auto segment = pack_tile(connection, layer, state->type, tile, through);
     if (segment && *segment) {
       packed.push_back(std::move(**segment));
       continue;
@@ -672,7 +600,7 @@ Result<std::int64_t> JournalMerger::pack_tiles(const Claim& claim, LayerId layer
   }
   if (packed.empty()) return 0;
   Statements statements;
-  begin_fenced(claim.model, claim.epoch, layer, std::string(name(*type)), statements);
+  begin_fenced(claim.model, claim.epoch, layer, *state, statements);
   replace_by_segments(layer, packed, statements);
   find_unlisted(claim.model, packed, statements);
   const auto revisions = static_cast<std::int64_t>(packed.size()) * kRevisionsPerSegment;

@@ -45,7 +45,8 @@ struct JournalState {
 
 // Reads the journal of edits. JournalWriter writes it, and JournalMerger makes it smaller. A merged
 // edit has the sequence of its last batch. Therefore, a state at the sequence of an earlier batch
-// does not contain any part of the stroke.
+// does not contain any part of the stroke. JournalThinner removes old states: to read such a state
+// is an error with the code `gone` (kept_states.h).
 // Part of Store, whose rules for threads and errors apply.
 class Journal {
  public:
@@ -111,7 +112,8 @@ class Journal {
   Result<UndoSteps> undo_steps(ModelId model_id, const std::string& user, const UndoQuery& query);
   Result<std::int64_t> last_sequence(ModelId model_id);
   // Returns the sequence of the last edit up to a time (text as in core/text/timestamp.h), or 0
-  // before the first edit.
+  // before the first edit. If the journal no longer has this state, returns the last one before it
+  // that the journal has.
   Result<std::int64_t> sequence_at(ModelId model_id, const std::string& utc);
   // Returns the time of the last edit, up to a sequence, of the layers that are visible to all
   // roles. Returns nothing if no such edit exists.
@@ -122,6 +124,7 @@ class Journal {
 
  private:
   friend class JournalMerger;
+  friend class JournalThinner;
   Pool& pool_;
 };
 

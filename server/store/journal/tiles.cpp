@@ -9,6 +9,7 @@
 #include "domain/layers/revision.h"
 #include "domain/layers/tile_segment.h"
 #include "store/journal/journal_reads.h"
+#include "store/journal/kept_states.h"
 #include "store/journal/merge_plan.h"
 #include "store/pg/sql.h"
 #include "store/store_impl.h"
@@ -153,14 +154,18 @@ constexpr auto kLoadTiles = sql(
     kRowsOfTiles);
 
 // Selects only the tiles that edits after $3 and up to $4 wrote. The state from which the caller
-// starts, $5, may contain a part of a stroke that was merged since it was read.
+// starts, $5, may contain a part of a stroke that was merged since it was read. $6 is the largest
+// span of a merged stroke. The stroke may also have become part of a checkpoint, which has no
+// largest span. But it begins within $6, so it is one of the edits up to there or the next one.
 constexpr auto kLoadTilesNear = sql(
     "WITH tiles AS MATERIALIZED (SELECT tile_y, tile_x FROM tile_revisions "
     "WHERE layer_id = $1 AND sequence > $3 AND sequence <= $4 UNION "
     "SELECT (t / 128)::smallint, (t % 128)::smallint FROM edits, unnest(tiles) t WHERE layer_id = $1 "
     "AND sequence > $3 AND sequence <= $4 UNION "
     "SELECT (t / 128)::smallint, (t % 128)::smallint FROM edits, unnest(tiles) t WHERE layer_id = $1 "
-    "AND sequence > $5 AND sequence <= $5 + $6 AND first_sequence <= $5 "
+    "AND sequence > $5 AND sequence <= $5 + $6 AND (first_sequence <= $5 OR op = 'checkpoint') UNION "
+    "SELECT (t / 128)::smallint, (t % 128)::smallint FROM (SELECT op, tiles FROM edits WHERE layer_id = $1 "
+    "AND sequence > $5 + $6 ORDER BY sequence LIMIT 1) e, unnest(e.tiles) t WHERE e.op = 'checkpoint' "
     "ORDER BY tile_y, tile_x) ",
     kRowsOfTiles);
 
@@ -183,6 +188,7 @@ Result<TileMirror::Snapshot> Journal::load_tiles(const Layer& layer,
         Params().id(layer.id).integer(
             at_sequence.value_or(std::numeric_limits<std::int64_t>::max()))));
     if (last.rows() == 0) return no_such("layer", to_string(layer.id));
+    if (at_sequence) STRATA_TRY(check_kept(connection, layer.id, *at_sequence));
     const std::int64_t sequence = last.integer(0, 0);
     TileLoader loader(layer.type, sequence);
     STRATA_TRY(connection.each_row(kLoadTiles.c_str(), Params().id(layer.id).integer(sequence),
@@ -197,6 +203,8 @@ Result<TileMirror::Snapshot> Journal::load_tiles_near(const Layer& layer, std::i
   TileMirror::Snapshot snapshot{near.tiles, sequence};
   if (near.sequence == sequence) return snapshot;
   return pool_.read([&](PgConnection& connection) -> Result<TileMirror::Snapshot> {
+    auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
+    STRATA_TRY(check_kept(connection, layer.id, sequence));
     TileLoader loader(layer.type, sequence);
     STRATA_TRY(connection.each_row(kLoadTilesNear.c_str(),
                                    Params()
@@ -219,6 +227,8 @@ Result<TileMirror::Snapshot> Journal::load_tiles_near(const Layer& layer, std::i
 Result<std::map<LayerId, std::int64_t>> Journal::layer_sequences(ModelId model_id,
                                                                  std::int64_t sequence) {
   return pool_.read([&](PgConnection& connection) -> Result<std::map<LayerId, std::int64_t>> {
+    auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
+    STRATA_TRY(check_kept(connection, model_id, sequence));
     auto rows = STRATA_TRY(connection.query(
         "SELECT l.id, e.sequence FROM layers l CROSS JOIN LATERAL (SELECT sequence FROM edits "
         "WHERE layer_id = l.id AND sequence <= $2 ORDER BY sequence DESC LIMIT 1) e "
@@ -383,15 +393,14 @@ Result<std::vector<WrittenTiles>> Journal::written_by(const Layer& layer,
 }
 
 Result<std::uint64_t> Journal::revision_bytes(ModelId model_id) {
-  return pool_.read([&](PgConnection& connection) -> Result<std::uint64_t> {
-    auto row = STRATA_TRY(connection.query(
-        "SELECT (SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0) "
-        "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1)::bigint + "
-        "(SELECT coalesce(sum(octet_length(s.content)), 0) FROM layers l JOIN tile_segments s ON s.layer_id = l.id "
-        "WHERE l.model_id = $1)::bigint",
-        Params().id(model_id)));
-    return static_cast<std::uint64_t>(row.integer(0, 0));
-  });
+  auto lease = STRATA_TRY(pool_.acquire(kBulkLimits));
+  auto row = STRATA_TRY((*lease).query(
+      "SELECT (SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0) "
+      "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1)::bigint + "
+      "(SELECT coalesce(sum(octet_length(s.content)), 0) FROM layers l JOIN tile_segments s ON s.layer_id = l.id "
+      "WHERE l.model_id = $1)::bigint",
+      Params().id(model_id)));
+  return static_cast<std::uint64_t>(row.integer(0, 0));
 }
 
 }  // namespace strata::store

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <vector>
 
 #include "store/journal/journal_reads.h"
+#include "store/journal/kept_states.h"
 #include "store/pg/pg_row.h"
+#include "store/pg/sql.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -21,15 +24,31 @@ PgArray ids_of(const std::vector<LayerId>& layers) {
 // Counts strokes, so that the counts stay the same when the batches of a stroke are merged. Only a
 // stroke that lasts for several intervals counts in each of them before, and once after the merge.
 // Clients receive times in milliseconds. The state at the time of an edit must include the edit.
-// The query returns one row for each interval, author and layer. The rows of an interval are joined
-// in memory, so the number of intervals limits the result.
+// A checkpoint (journal_thinner.h) has no author, but contains the number of strokes of each
+// author. The query returns one row for each interval, author and layer. The rows of an interval
+// are joined in memory, so the number of intervals limits the result.
 constexpr const char* kCells =
     "WITH seen AS MATERIALIZED (SELECT time, sequence, layer_id, user_name, stroke FROM edits WHERE model_id = $1 AND layer_id = any($2) "
     "AND time >= coalesce($3::timestamptz, '-infinity') AND time < coalesce($4::timestamptz, 'infinity') + interval '1 millisecond'), "
-    "bounds AS (SELECT coalesce($3::timestamptz, min(time)) AS low, coalesce($4::timestamptz, max(time)) AS high FROM seen) "
+    "bounds AS (SELECT coalesce($3::timestamptz, min(time)) AS low, coalesce($4::timestamptz, max(time)) AS high FROM seen), "
+    "counted AS (SELECT time, sequence, layer_id, user_name, stroke, 0::bigint AS others FROM seen WHERE user_name <> '' UNION ALL "
+    "SELECT s.time, s.sequence, s.layer_id, p ->> 'user', NULL, (p ->> 'edits')::bigint FROM seen s CROSS JOIN LATERAL "
+    "(SELECT record FROM edits WHERE model_id = $1 AND sequence = s.sequence AND op = 'checkpoint' LIMIT 1) e "
+    "CROSS JOIN LATERAL jsonb_array_elements(e.record -> 'people') p WHERE s.user_name = '') "
     "SELECT b.low, b.high, least(CASE WHEN b.high > b.low THEN floor(date_part('epoch', s.time - b.low) / "
-    "date_part('epoch', b.high - b.low) * $5)::integer ELSE 0 END, $5 - 1) AS number, s.user_name, s.layer_id, count(DISTINCT s.stroke), min(s.sequence), "
-    "max(s.sequence), min(s.time), max(s.time) FROM seen s CROSS JOIN bounds b GROUP BY 1, 2, 3, 4, 5 ORDER BY 3";
+    "date_part('epoch', b.high - b.low) * $5)::integer ELSE 0 END, $5 - 1) AS number, s.user_name, s.layer_id, "
+    "(count(DISTINCT s.stroke) + sum(s.others))::bigint, min(s.sequence), max(s.sequence), min(s.time), max(s.time) FROM counted s CROSS JOIN bounds b GROUP BY 1, 2, 3, 4, 5 ORDER BY 3";
+
+// A checkpoint has an author if all its edits are by one person. Its second edit, which has no
+// authors, is not a step.
+constexpr auto kStepColumns = sql(
+    "SELECT coalesce(first_sequence, sequence), sequence, stroke, layer_id, CASE WHEN op = 'checkpoint' "
+    "AND jsonb_array_length(record -> 'people') = 1 THEN record -> 'people' -> 0 ->> 'user' ELSE user_name END, op, time, "
+    "(answer ->> 'texels_changed')::bigint, (answer ->> 'area_m2')::double precision FROM edits "
+    "WHERE model_id = $1 AND layer_id = any($2) AND NOT (op = 'checkpoint' AND record -> 'people' = '[]') ");
+constexpr auto kStepsBefore =
+    sql(kStepColumns, "AND sequence <= $3 ORDER BY sequence DESC LIMIT $4");
+constexpr auto kStepsAfter = sql(kStepColumns, "AND sequence > $3 ORDER BY sequence LIMIT $4");
 
 template <class Counted>
 auto by_count(const Counted& counted) {
@@ -102,6 +121,10 @@ Result<Timeline> Journal::timeline(ModelId model_id, const TimelineQuery& query)
           return {};
         }));
     joined.end(timeline);
+    // An interval shows no state that is newer than its end.
+    const auto thinned = STRATA_TRY(ThinnedSpans::read(connection, model_id));
+    for (Timeline::Interval& interval : timeline.intervals)
+      if (const auto* span = thinned.around(interval.last)) interval.last = span->states.before;
     return timeline;
   });
 }
@@ -111,13 +134,7 @@ Result<TimelineSteps> Journal::timeline_steps(ModelId model_id, const std::vecto
   return pool_.read([&](PgConnection& connection) -> Result<TimelineSteps> {
     const int most = limit * kRowsOfStep;
     auto rows = STRATA_TRY(connection.query(
-        backward
-            ? "SELECT coalesce(first_sequence, sequence), sequence, stroke, layer_id, user_name, op, time, (answer ->> 'texels_changed')::bigint, "
-              "(answer ->> 'area_m2')::double precision FROM edits WHERE model_id = $1 AND layer_id = any($2) AND sequence <= $3 "
-              "ORDER BY sequence DESC LIMIT $4"
-            : "SELECT coalesce(first_sequence, sequence), sequence, stroke, layer_id, user_name, op, time, (answer ->> 'texels_changed')::bigint, "
-              "(answer ->> 'area_m2')::double precision FROM edits WHERE model_id = $1 AND layer_id = any($2) AND sequence > $3 "
-              "ORDER BY sequence LIMIT $4",
+        backward ? kStepsBefore.c_str() : kStepsAfter.c_str(),
         Params().id(model_id).array(ids_of(layers)).integer(from).integer(most + 1)));
     TimelineSteps found;
     found.more = rows.rows() > most;
@@ -153,6 +170,15 @@ Result<TimelineSteps> Journal::timeline_steps(ModelId model_id, const std::vecto
       step.area_m2 += row.area_m2;
     }
     std::ranges::sort(found.steps, {}, &TimelineStep::last);
+    // Within the checkpoint of another layer, the model has no state. A step leads to a state that
+    // contains it.
+    const auto thinned = STRATA_TRY(ThinnedSpans::read(connection, model_id));
+    for (TimelineStep& step : found.steps) {
+      const auto* span = thinned.around(step.last);
+      if (!span) continue;
+      step.last = span->states.after;
+      step.time = std::max(step.time, span->ended);
+    }
     return found;
   });
 }

@@ -17,8 +17,10 @@ struct Timeline {
   struct Interval {  // an interval that contains an edit
     int number = 0;  // counted from 0
     std::int64_t edits = 0;
-    std::int64_t first = 0, last = 0;  // sequences
-    Time begun, ended;                 // times of the first and the last edit
+    // Sequences. If the journal no longer has the state at the last edit, `last` is the last state
+    // before it that the journal has, which can be 0.
+    std::int64_t first = 0, last = 0;
+    Time begun, ended;  // times of the first and the last edit
     struct Share {
       std::string user;
       std::int64_t edits = 0;
@@ -41,7 +43,9 @@ struct TimelineQuery {
 
 // A stroke, or another edit. A stroke with batches on two pages is divided between them.
 struct TimelineStep {
-  std::int64_t first = 0, last = 0;  // sequences
+  // Sequences. If the journal no longer has the state at the last batch, `last` and `time` are
+  // those of the next state that it has. Several steps can lead to it.
+  std::int64_t first = 0, last = 0;
   Uuid stroke;
   LayerId layer;
   std::string user, op;
@@ -50,7 +54,7 @@ struct TimelineStep {
   double area_m2 = 0;
 };
 struct TimelineSteps {
-  std::vector<TimelineStep> steps;  // ascending by last sequence
+  std::vector<TimelineStep> steps;  // ascending by `last`
   bool more = false;                // the journal has more steps in the direction of the query
 };
 

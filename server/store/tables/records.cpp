@@ -3,6 +3,7 @@
 #include <set>
 
 #include "domain/tables/column_value.h"
+#include "store/journal/kept_states.h"
 #include "store/store_impl.h"
 #include "store/tables/record_sql.h"
 #include "store/tables/records.h"
@@ -369,6 +370,9 @@ Result<std::int64_t> Tables::sequence_at(TableId table_id, const std::string& ut
 Result<std::int64_t> Tables::sequence_when(TableId table_id, ModelId model_id,
                                            std::int64_t sequence) {
   return pool_.read([&](PgConnection& connection) -> Result<std::int64_t> {
+    auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
+    // Inside a checkpoint of any layer, the journal no longer has the time of the state.
+    STRATA_TRY(check_kept(connection, model_id, sequence));
     auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits WHERE table_id = $1 AND "
         "time <= (SELECT max(time) FROM edits WHERE model_id = $2 AND sequence <= $3)",
