@@ -19,6 +19,12 @@ nlohmann::json to_json(const store::JournalRow& row) {
       if (auto found = row.answer.find(member); found != row.answer.end()) json[member] = *found;
   for (const char* member : {"recipe", "expression", "shape", "max_angle_deg", "depth_bias"})
     if (auto found = row.record.find(member); found != row.record.end()) json[member] = *found;
+  if (row.op == "checkpoint") {
+    nlohmann::json people = nlohmann::json::array();
+    for (const nlohmann::json& person : row.record.at("people"))
+      people.push_back({{"user", person.at("user")}, {"edits", person.at("edits")}});
+    json["people"] = std::move(people);
+  }
   if (row.review != Review::none) json["review"] = name(row.review);
   if (row.reviewer) {
     json["reviewer"] = {{"user", row.reviewer->user}, {"time", utc_text(row.reviewer->time)}};

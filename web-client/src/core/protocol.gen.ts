@@ -2796,6 +2796,16 @@ export interface Review {
   reason?: ReviewReason;
 }
 
+/** Edits by one user in an interval. */
+export interface TimelinePerson {
+  user: string;
+  /** Full name of `user`. Absent if the user has not entered a full name. */
+  full_name?: string;
+  /** Color of `user`. */
+  color?: PersonColor;
+  edits: number;
+}
+
 /** Edit in the history of a layer. */
 export interface HistoryEntry {
   sequence: number;
@@ -2804,7 +2814,8 @@ export interface HistoryEntry {
   user: string;
   /** In UTC (RFC 3339). */
   time: string;
-  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen";
+  /** checkpoint: the edits of a period, after an administrator has thinned the history. */
+  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen" | "checkpoint";
   /** false while the edit is undone or rejected. */
   in_force?: boolean;
   review?: ReviewState;
@@ -2818,6 +2829,8 @@ export interface HistoryEntry {
   shape?: ToolShape;
   max_angle_deg?: SlantLimit;
   depth_bias?: DepthBias;
+  /** For a checkpoint, the authors of its edits, with the number of their strokes and other edits. */
+  people?: TimelinePerson[];
 }
 
 /** History of a layer, newest first. */
@@ -2870,16 +2883,6 @@ export interface Difference {
   share: number;
 }
 
-/** Edits by one user in an interval. */
-export interface TimelinePerson {
-  user: string;
-  /** Full name of `user`. Absent if the user has not entered a full name. */
-  full_name?: string;
-  /** Color of `user`. */
-  color?: PersonColor;
-  edits: number;
-}
-
 /** Interval of a timeline that contains edits. */
 export interface TimelineInterval {
   /** Number of the interval, starting at 0. All intervals have the same length. */
@@ -2887,7 +2890,7 @@ export interface TimelineInterval {
   edits: number;
   /** Sequence of its first edit. */
   first: number;
-  /** Sequence of its last edit. */
+  /** Sequence of its last edit. In a thinned history: the last available state up to this edit, which can be 0. You can use this number as `at`. */
   last: number;
   /** Time of its first edit. */
   begun: string;
@@ -2919,7 +2922,7 @@ export interface Timeline {
 export interface TimelineStep {
   /** Sequence of its first batch. */
   first: number;
-  /** Sequence of its last batch. You can use this number as `at`. */
+  /** Sequence of its last batch. In a thinned history: the next available state from this batch on, to which several steps can lead. You can use this number as `at`. */
   last: number;
   stroke: string;
   layer: number;
@@ -2928,8 +2931,9 @@ export interface TimelineStep {
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
-  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen";
-  /** Time of its last batch. */
+  /** checkpoint: the edits of a period, after an administrator has thinned the history. */
+  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen" | "checkpoint";
+  /** Time of its last batch, or of the state `last`. */
   time: string;
   /** Number of texels that its batches changed. A texel counts once for each batch that changed it. */
   texels_changed: number;

@@ -54,13 +54,17 @@ export function nextInterval(
     : lastWhere(intervals, ({ last }) => last < sequence);
 }
 
-/** Merges both lists without duplicates, in ascending order. */
+/**
+ * Merges both lists without duplicates, in ascending order. In a thinned history, several steps can
+ * lead to the same state.
+ */
 export function joinSteps(
   known: readonly TimelineStep[],
   more: readonly TimelineStep[],
 ): TimelineStep[] {
-  const all = new Map(known.map((step) => [step.last, step]));
-  for (const step of more) all.set(step.last, step);
+  const key = ({ last, stroke }: TimelineStep): string => `${last} ${stroke}`;
+  const all = new Map(known.map((step) => [key(step), step]));
+  for (const step of more) all.set(key(step), step);
   return [...all.values()].sort((a, b) => a.last - b.last);
 }
 
@@ -74,11 +78,16 @@ export interface Authors {
   edits: number;
 }
 
-/** Returns the authors and layers of these steps, those with the most steps first. */
+/**
+ * Returns the authors and layers of these steps, those with the most steps first. A step of a
+ * thinned history has no author if several people made its edits.
+ */
 export function authorsOf(steps: readonly TimelineStep[]): Authors {
   const people = new Map<string, { user: string; full_name?: string; steps: number }>();
   const layers = new Map<number, number>();
   for (const { user, full_name: fullName, layer } of steps) {
+    layers.set(layer, (layers.get(layer) ?? 0) + 1);
+    if (user === "") continue;
     const person = people.get(user) ?? {
       user,
       ...(fullName === undefined ? {} : { full_name: fullName }),
@@ -86,7 +95,6 @@ export function authorsOf(steps: readonly TimelineStep[]): Authors {
     };
     person.steps += 1;
     people.set(user, person);
-    layers.set(layer, (layers.get(layer) ?? 0) + 1);
   }
   return {
     people: [...people.values()]

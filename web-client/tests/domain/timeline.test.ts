@@ -91,6 +91,8 @@ describe("steps", () => {
     expect(steps.map(({ last }) => last)).toEqual([3, 4, 5, 9]);
     expect(stepOf(steps, 8)?.last).toBe(5);
     expect(stepOf(steps, 2)).toBeNull();
+    const checkpoints = joinSteps([step(3)], [{ ...step(3), stroke: "other", layer: 2 }]);
+    expect(checkpoints.map(({ layer }) => layer)).toEqual([1, 2]);
   });
 
   it("tell who changed what, with the most first", () => {
@@ -98,5 +100,8 @@ describe("steps", () => {
     expect(authors.people.map(({ user }) => user)).toEqual(["ben", "ada"]);
     expect(authors.layers).toEqual([2, 1]);
     expect(authors.edits).toBe(3);
+    expect(authorsOf([step(1, "ada"), step(2, "")]).people.map(({ user }) => user)).toEqual([
+      "ada",
+    ]);
   });
 });

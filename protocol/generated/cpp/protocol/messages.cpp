@@ -886,6 +886,7 @@ std::string_view name(HistoryEntryOp value) {
     case HistoryEntryOp::accept: return "accept";
     case HistoryEntryOp::reject: return "reject";
     case HistoryEntryOp::reopen: return "reopen";
+    case HistoryEntryOp::checkpoint: return "checkpoint";
   }
   return {};
 }
@@ -903,6 +904,7 @@ void read(const nlohmann::json& json, HistoryEntryOp& value) {
   if (text == "accept") value = HistoryEntryOp::accept;
   if (text == "reject") value = HistoryEntryOp::reject;
   if (text == "reopen") value = HistoryEntryOp::reopen;
+  if (text == "checkpoint") value = HistoryEntryOp::checkpoint;
 }
 
 nlohmann::json to_json(const HistoryEntryOp& value) { return name(value); }
@@ -3314,6 +3316,7 @@ void read(const nlohmann::json& json, HistoryEntry& value) {
   read_optional_member(json, "shape", value.shape);
   read_optional_member(json, "max_angle_deg", value.max_angle_deg);
   read_optional_member(json, "depth_bias", value.depth_bias);
+  read_optional_member(json, "people", value.people);
 }
 
 nlohmann::json to_json(const HistoryEntry& value) {
@@ -3334,6 +3337,7 @@ nlohmann::json to_json(const HistoryEntry& value) {
   write_optional_member(json, "shape", value.shape);
   write_optional_member(json, "max_angle_deg", value.max_angle_deg);
   write_optional_member(json, "depth_bias", value.depth_bias);
+  write_optional_member(json, "people", value.people);
   return json;
 }
 

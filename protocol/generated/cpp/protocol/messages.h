@@ -2588,7 +2588,7 @@ nlohmann::json to_json(const Review& value);
 template <>
 inline constexpr Schema kSchemaOf<Review> = Schema::Review;
 
-enum class HistoryEntryOp { stroke, fill, polygon, import, compute, undo, redo, restore, accept, reject, reopen };
+enum class HistoryEntryOp { stroke, fill, polygon, import, compute, undo, redo, restore, accept, reject, reopen, checkpoint };
 std::string_view name(HistoryEntryOp value);
 void read(const nlohmann::json& json, HistoryEntryOp& value);
 nlohmann::json to_json(const HistoryEntryOp& value);
@@ -2600,6 +2600,7 @@ struct HistoryEntry {
   std::optional<Uuid> stroke;
   std::string user;
   std::string time;  // In UTC (RFC 3339).
+  // checkpoint: the edits of a period, after an administrator has thinned the history.
   HistoryEntryOp op{};
   std::optional<bool> in_force;  // false while the edit is undone or rejected.
   std::optional<ReviewState> review;
@@ -2613,6 +2614,8 @@ struct HistoryEntry {
   std::optional<ToolShape> shape;
   std::optional<double> max_angle_deg;
   std::optional<double> depth_bias;
+  // For a checkpoint, the authors of its edits, with the number of their strokes and other edits.
+  std::optional<std::vector<nlohmann::json>> people;
   bool operator==(const HistoryEntry&) const = default;
 };
 void read(const nlohmann::json& json, HistoryEntry& value);

@@ -241,7 +241,7 @@ export class StrataPastBar extends LitElement {
       return html`${personMark(step)}
         <div>
           <b class="ellipsis numeric">${toldTime(step.time)}</b>
-          <small class="ellipsis">${called(step)} ${did} ${layer ? labelOf(layer) : ""}</small>
+          <small class="ellipsis">${called(step) || words.several} ${did} ${layer ? labelOf(layer) : ""}</small>
         </div>`;
     }
     return html`<div>

@@ -60,7 +60,8 @@ export class StrataPastSince extends LitElement {
     if (!news) return html``;
     const names = news.people.slice(0, kNamed).map((person) => called(person));
     const others = news.people.length - names.length;
-    const people = formatList(others > 0 ? [...names, words.others(others)] : names);
+    const people =
+      formatList(others > 0 ? [...names, words.others(others)] : names) || words.several;
     return html`<div role="status">
       <span
         >${words.since(toldTime(news.since.time), `${words.edits(news.edits)}${news.more ? "+" : ""}`, people, layersText(this.session, news.layers.slice(0, kNamed)))}</span
