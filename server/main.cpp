@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
       {"kiosk", strata::cli::add_kiosk(app)},
       {"audit", strata::cli::add_audit(app)},
       {"files", strata::cli::add_files(app)},
+      {"journal", strata::cli::add_journal(app)},
       {"upgrade-database", strata::cli::add_upgrade_database(app)},
   };
   try {

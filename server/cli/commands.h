@@ -19,6 +19,7 @@ Command add_token(CLI::App& app);
 Command add_kiosk(CLI::App& app);
 Command add_audit(CLI::App& app);
 Command add_files(CLI::App& app);
+Command add_journal(CLI::App& app);
 Command add_backup(CLI::App& app);
 Command add_restore(CLI::App& app);
 Command add_upgrade_database(CLI::App& app);

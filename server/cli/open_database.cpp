@@ -33,6 +33,19 @@ void add_files_options(CLI::App& command, DataOptions& options) {
       ->needs(files);
 }
 
+namespace {
+
+// Returns `conflict` if the database does not have exactly the migrations of this program.
+Result<void> check_same_version(const std::string& dsn) {
+  const auto schema = STRATA_TRY(store::inspect_database(dsn, install_dirs().migrations));
+  if (schema.schema_version == schema.known_version) return {};
+  return fail(ErrorCode::conflict, "Version mismatch",
+              "The server of this database has a different version than this program. Use the "
+              "program of that version, or restart the server.");
+}
+
+}  // namespace
+
 Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) {
   auto open = std::make_unique<OpenDatabase>();
   std::error_code error;
@@ -50,6 +63,7 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
     open->cluster = std::move(cluster);
     store_options.dsn = open->cluster->dsn();
   }
+  if (!options.migrates) STRATA_TRY(check_same_version(store_options.dsn));
   auto store = store::Store::open(store_options, install_dirs().migrations);
   if (!store) return tl::unexpected(store.error());
   open->store = std::move(*store);
@@ -71,12 +85,7 @@ Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& op
   if (!state.running) return open_database(options);
   // While a server is running, no other program may migrate its database. The server migrates it
   // when it starts.
-  const auto schema = STRATA_TRY(store::inspect_database(state.dsn, install_dirs().migrations));
-  if (schema.schema_version != schema.known_version)
-    return fail(ErrorCode::conflict, "Version mismatch",
-                "The server that uses " + options.data.string() +
-                    " has a different version than this program. Use the program of that version, "
-                    "or restart the server.");
+  STRATA_TRY(check_same_version(state.dsn));
   DataOptions beside = options;
   beside.database = state.dsn;
   return open_database(beside);

@@ -16,6 +16,8 @@ struct DataOptions {
   std::string database;
   store::FilesPlace files{};
   store::ClusterOptions cluster{};  // only for `serve`
+  // false: a command that refuses a database of another version, instead of migrating it
+  bool migrates = true;
 };
 void add_data_options(CLI::App& command, DataOptions& options);
 // Only for commands that read or write scans and other large content.
