@@ -14,11 +14,12 @@ using std::chrono::milliseconds;
 // Rooms at this node show an old state while the reader waits.
 constexpr PgLimits kStatesLimits{milliseconds(2000), milliseconds(2000), milliseconds(1000)};
 
-// The digest of the last edit of a model, up to a sequence. An edit that is made again with the
-// same id has another time.
+// The digest of the last edit of a model, up to a sequence. An edit that is made again, even with
+// the same id, has another time. An edit that becomes part of a checkpoint keeps its sequence and
+// time, but not its id.
 consteval auto last_edit(const auto& model, const auto& sequence) {
   return sql(
-      "coalesce((SELECT hashtextextended(concat_ws(' ', e.sequence, e.id, extract(epoch FROM e.time)), 0) "
+      "coalesce((SELECT hashtextextended(concat_ws(' ', e.sequence, extract(epoch FROM e.time)), 0) "
       "FROM edits e WHERE e.model_id = ",
       model, " AND e.sequence <= ", sequence, " ORDER BY e.sequence DESC LIMIT 1), 0)");
 }

@@ -24,6 +24,7 @@
 #include "store/content/trash.h"
 #include "store/journal/journal_merger.h"
 #include "store/journal/journal_reads.h"
+#include "store/journal/journal_thinner.h"
 #include "store/nodes/nodes.h"
 #include "store/pg/pg.h"
 #include "stream/viewer.h"
@@ -528,6 +529,36 @@ TEST_F(Following, a_follower_continues_with_the_next_owner) {
   restart_owner();
   ASSERT_TRUE(send(stroke(layer_, 6, {{320, 240}}, 20)));
   expect_follower_equals_owner();
+  EXPECT_FALSE(recorder_.has_moved);
+}
+
+// Another node thins the journal, up to the newest edit, and claims the model. The follower learns
+// of both at once, and must not report that edits were lost.
+TEST_F(Following, a_follower_continues_after_the_journal_was_thinned) {
+  for (int i = 0; i < 6; ++i) ASSERT_TRUE(send(stroke(layer_, 5 + i, {{300 + 20.0 * i, 240}}, 20)));
+  ASSERT_TRUE(send(request(layer_, room::UndoEdit{})));
+  follow();
+  script(
+      "UPDATE edits SET time = date_trunc('day', time) - interval '60 days' + sequence * interval '1 minute'");
+  wait_until_asked();
+  rooms_.reset();
+  auto blocker = block_tail();
+  store::JournalThinner thinner(store_->journal());
+  const auto done = thinner.thin(
+      model_.id, {std::chrono::system_clock::now() - std::chrono::days(30), store::Period::day},
+      [] { return true; });
+  ASSERT_TRUE(done) << done.error().detail;
+  EXPECT_EQ(done->removed, 5);
+  script("UPDATE models SET owner_epoch = owner_epoch + 1");
+  ASSERT_TRUE(blocker.script("COMMIT"));
+  wait_until_asked();
+  restart_owner();
+  expect_follower_equals_owner();
+  ASSERT_TRUE(send(stroke(layer_, 20, {{320, 240}}, 20)));
+  expect_follower_equals_owner();
+  ASSERT_TRUE(send(request(layer_, room::UndoEdit{})));
+  expect_follower_equals_owner();
+  EXPECT_FALSE(send(request(layer_, room::UndoEdit{}))) << "the other edits are in a checkpoint";
   EXPECT_FALSE(recorder_.has_moved);
 }
 
