@@ -1,18 +1,24 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Measures how soon painting continues after faults of the example of a cluster (examples/cluster),
 and counts lost and doubled strokes. Two painters and a viewer use the cluster through nginx.
 
-    STRATA_BINARY=build/release/bin/strata tests/bench/cluster_faults.py [--rounds N]
+    STRATA_BINARY=build/release/bin/strata tests/bench/cluster_faults.py [--rounds N] [--json FILE] [--only NAME,…]
 
-Each round kills the node that has the model, and then the PostgreSQL primary, which has commits that
-no standby has received. Prints a Markdown table:
+cluster_node     kill -9 of the node that has the model
+cluster_primary  kill -9 of the PostgreSQL primary, which has commits that no standby has received
 
-seconds    from the kill until both painters have a saved stroke that they began after the kill
-viewer     seconds without a frame, from the kill until then
-lost       strokes that were reported as saved, and that the history does not contain
-doubled    strokes in the history that are there twice, or whose save was never reported
+Painting continues when both painters have a saved stroke that they began after the kill. *No frame*
+is the longest time without a frame of the viewer from the kill until then. Then the strokes are
+compared with the history:
 
-A round takes one to two minutes. `./test` unpacks the programs that this needs.
+lost          strokes that were reported as saved, and that the history does not contain
+doubled       strokes in the history that are there twice, or whose save was never reported
+wrong_texels  1 if texels differ from a replay of the strokes in their order
+
+With --json, the results are added to those of earlier runs in this file, which can be the file of
+node_faults.py. Prints the sums of all runs as a Markdown table. Exits with 1 if a number above is
+not 0, or if a round did not end. A round takes one to two minutes. `./test` unpacks the programs
+that this needs.
 """
 import argparse
 import os
@@ -21,7 +27,9 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
 from support.cluster_site import ClusterSite, paint_at, seconds_until_all_paint
-from support.latencies import percentile
+from support.fault_record import FaultRecord
+from support.machine import gl_renderer, machine
+from support.painted_model import LAYERS
 from support.strata_server import wait_for
 
 
@@ -35,15 +43,14 @@ def kill_primary(site, _):
     return primary, lambda: site.leave_commits_unconfirmed(primary)
 
 
-EVENTS = {"node killed": kill_node, "primary killed": kill_primary}
+FAULTS = {"cluster_node": kill_node, "cluster_primary": kill_primary}
 
 
-def measure(site, event, seed):
-    """Returns (seconds, viewer, saved, lost, doubled)."""
+def one_round(site, name, seed):
     painted, painters, viewer = paint_at(site, seed)
     seconds_until_all_paint(painted, painters, time.monotonic())
     wait_for(lambda: viewer.frames, "a frame")
-    part, prepare = EVENTS[event](site, painted)
+    part, prepare = FAULTS[name](site, painted)
     prepare()
     site.cluster.kill(part)
     begun = time.monotonic()
@@ -59,42 +66,58 @@ def measure(site, event, seed):
     lost = len(painted.book.edits.keys() - rows.keys())
     doubled = len(rows.keys() - painted.book.edits.keys())
     doubled += len(rows) - len({row["id"] for _, row in rows.values()})
-    return seconds, gap, len(painted.book.edits), lost, doubled
+    found = {"went_on_s": seconds, "no_frame_s": gap, "lost": lost, "doubled": doubled}
+    return painted, {**found, "strokes": len(painted.book.edits)}
 
 
-def table(results):
-    lines = [
-        "| event | rounds | seconds, p50 | p95 | viewer, p50 | p95 | saved strokes | lost | doubled |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    for event, rows in results.items():
-        seconds, gaps, saved, lost, doubled = zip(*rows)
-        times = [
-            f"{percentile(values, share):.1f}"
-            for values in (seconds, gaps)
-            for share in (0.5, 0.95)
-        ]
-        counts = [str(sum(values)) for values in (saved, lost, doubled)]
-        lines.append(f"| {' | '.join([event, str(len(rows)), *times, *counts])} |")
-    return "\n".join(lines)
+def replay(painted):
+    """Returns whether texels differ from a replay."""
+    try:
+        painted.compare_with_replay({name: painted.texels(name) for name, *_ in LAYERS})
+    except AssertionError as error:
+        print(error, file=sys.stderr, flush=True)
+        return True
+    return False
+
+
+def run(record, chosen, rounds, seed):
+    name = "start"
+    try:
+        with ClusterSite() as site:
+            site.run("examples/cluster/up")
+            for _ in range(rounds):
+                for name in chosen:
+                    painted, found = one_round(site, name, seed + record.rounds(name))
+                    record.add(name, found)
+                    record.add_replay(found["strokes"], int(replay(painted)))
+    except Exception as error:
+        record.add_failure(name, error)
+        raise
 
 
 def main():
-    parser = argparse.ArgumentParser()
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--json")
+    parser.add_argument("--only", default=",".join(FAULTS))
     asked = parser.parse_args()
+    chosen = asked.only.split(",")
+    unknown = set(chosen) - set(FAULTS)
+    if unknown:
+        parser.error(f"no such fault: {', '.join(sorted(unknown))}")
+    if asked.rounds < 1:
+        parser.error("--rounds must be 1 or more")
     # A merge replaces the strokes that the script compares.
     os.environ["STRATA_MERGE_AFTER"] = "0"
-    results = {event: [] for event in EVENTS}
-    with ClusterSite() as site:
-        site.run("examples/cluster/up")
-        for number in range(asked.rounds):
-            for event, rows in results.items():
-                rows.append(measure(site, event, asked.seed + number))
-                print(f"round {number + 1}, {event}: {rows[-1]}", file=sys.stderr, flush=True)
-    print(table(results))
+    facts = {**machine(), "renderer": gl_renderer(os.environ["STRATA_BINARY"])}
+    record = FaultRecord(asked.json, facts)
+    run(record, chosen, asked.rounds, asked.seed)
+    print("\n" + record.summary())
+    return 1 if record.wrong else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

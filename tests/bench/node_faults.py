@@ -1,177 +1,90 @@
 #!/usr/bin/python3
-"""Measures how a site of several nodes survives faults of a node and of the database.
+"""Measures how a site of several nodes survives faults of a node, of the database and of disks.
 
     STRATA_BINARY=build/release/bin/strata tests/bench/node_faults.py [--rounds N] [--json FILE] [--only NAME,…]
 
-Three nodes and one PostgreSQL run on this machine. Each node has its own connection to PostgreSQL,
-which the script can cut. Two painters send strokes to one model while each fault happens:
+Three nodes and one PostgreSQL run on this machine. Each node has its own connection to PostgreSQL
+and its own address for browsers, which the script can cut. Two painters send strokes to one model
+while each fault happens. *The owner* is the node that owns the model:
 
-kill       kill -9 of the node that owns the model
-drain      SIGTERM to this node
-hang       SIGSTOP of this node; SIGCONT after the painters have continued
-cut        no byte passes between this node and PostgreSQL; the held bytes arrive later
-postgres   kill -9 of PostgreSQL, which is started again immediately
+kill           kill -9 of the owner
+drain          SIGTERM to the owner
+hang           SIGSTOP of the owner; SIGCONT after the painters have continued
+cut            no byte passes between the owner and PostgreSQL; the held bytes arrive later
+browsers       no byte passes between the painters and the owner for 4 s
+gl             the driver of the owner reports the loss of the GL context
+memory         the owner gets no more memory from the kernel, and must draw large pictures
+clock_forward  the wall clock of the owner jumps forward by one hour, and back after 4 s
+clock_back     the wall clock of the owner jumps back by one hour, and forward after 4 s
+full_files     the disk of the folder --files is full during uploads
+full_uploads   the disk of the folder --data is full during uploads
+postgres       kill -9 of PostgreSQL, which is started again immediately
+postgres_hang  SIGSTOP of all processes of PostgreSQL for 4 s
+slow_disk      each write and sync of PostgreSQL takes 50 ms longer, for 4 s
+full_database  the disk of PostgreSQL is full until the database refuses strokes, or until
+               PostgreSQL ends, which is then started again
+
+A library in front of the C library causes the faults of clocks, disks and GL
+(tests/e2e/support/faulty_libc.c). So the script needs no rights on the machine.
 
 A painter waits for an answer for ANSWER_S, and then sends the same stroke to the next node.
 Painting continues when each painter has an acknowledgement of a stroke that it sent after the
-fault. After each round the painters stop, and their acknowledgements are compared with the journal
-in the database:
+fault (after its end for `browsers`, `postgres_hang` and `full_database`). After each round the
+painters stop, and their acknowledgements are compared with the journal in the database:
 
-lost       acknowledged strokes that are not in the journal
-doubled    strokes in the journal that no painter sent, or that are there more than once
-late       strokes that the hanging or separated node acknowledged after the end of its lease
+lost          acknowledged strokes that are not in the journal
+doubled       strokes in the journal that no painter sent, or that are there more than once
+late          strokes that a node acknowledged after its lease, or without its database
+wrong_texels  texels that differ from a replay of all strokes in their order
 
-Prints a Markdown table. Exits with 1 if a stroke was lost, doubled or late. Needs Debian's Python
-with pytest, because it uses the helpers of the end-to-end tests.
+With --json, the results are added to those of earlier runs in this file. Prints the sums of all
+runs as a Markdown table. Exits with 1 if a stroke was lost, doubled or late, if a texel is wrong,
+if a node used more than MOST_MB of memory, or if a round did not end. Needs Debian's Python with
+pytest, because it uses the helpers of the end-to-end tests, and a C compiler.
 """
 import argparse
-import http.client
-import json
 import os
-import random
 import signal
 import sys
-import threading
 import time
-import uuid
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
 from support.cameras import camera_from
-from support.latencies import percentile
+from support.fault_load import ANSWER_S, Journal, Load
+from support.fault_record import FaultRecord
+from support.faulty_libc import limit_memory, unlimit_memory
 from support.live_client import AWAY
 from support.machine import gl_renderer, machine
-from support.meshes import folded_grid
 from support.nodes import Site
+from support.process_memory import resident_mb
 from support.strata_server import LONG_S, wait_for
 
 NODES, PAINTERS = 3, 2
-ANSWER_S = 1.0
 LEASE_S = 3.0
-PROMISE_S = {"kill": 5, "drain": 1, "hang": 5, "cut": 5, "postgres": None}
-SPARE_STROKES = 5  # of each painter, before the fault
+LONGER_THAN_LEASE_S = LEASE_S + 1
+HOUR_S = 3600
+DELAY_S = 0.05
+ROUNDS_A_MODEL = 25  # a replay takes long if a model has many strokes
+UPLOAD = b"%PDF-1.4\n" + bytes(range(256)) * 8192
 
 
-class Stroke:
-    """An acknowledged stroke. `sent` and `at` are the times of the attempt that succeeded."""
+class FaultSite(Site):
+    """A site with one table for uploads."""
 
-    def __init__(self, sequence, node, sent):
-        self.sequence, self.node, self.sent, self.at = sequence, node, sent, time.monotonic()
+    def __init__(self, seed):
+        super().__init__(NODES, seed, links=True, faults=True)
+        self.files = os.path.join(self.postgres.data, "files")
+        self.options = ("--files", self.files)
 
-
-class Painter(threading.Thread):
-    """Paints until `stopping` is set. At the end, every stroke that it sent is acknowledged."""
-
-    def __init__(self, site, model, first, seed):
-        super().__init__(daemon=True)
-        self.site, self.model, self.node = site, model, first
-        self.random = random.Random(seed)
-        self.camera = camera_from(model, (0, -0.2, 1))
-        self.strokes = []
-        self.failure = None
-        self.stopping = threading.Event()
-        self.links = {}
-
-    def run(self):
-        try:
-            while not self.stopping.is_set():
-                self.strokes.append(self.paint())
-        except Exception as error:  # pylint: disable=broad-except
-            self.failure = error
-
-    def paint(self):
-        x, y = self.random.uniform(200, 400), self.random.uniform(150, 330)
-        edit = {
-            "op": "stroke",
-            "camera": self.camera,
-            "radius_px": 8,
-            "path": [[x, y], [x + 30, y + 20]],
-            "value": self.random.randint(1, 6),
-        }
-        headers = {"Idempotency-Key": str(uuid.uuid4())}
-        end = time.monotonic() + LONG_S
-        while time.monotonic() < end:
-            node, sent = self.node, time.monotonic()
-            answer = self.send(node, edit, headers)
-            if answer is not None and answer.status == 200:
-                return Stroke(answer.json()["sequence"], node, sent)
-            if answer is not None and answer.status == 307:
-                self.node = self.site.node_at(answer.headers["Location"])
-                continue
-            if answer is not None and answer.status not in (429, 503):
-                raise AssertionError(f"{edit} got {answer}")
-            nodes = self.site.nodes
-            self.node = nodes[(nodes.index(node) + 1) % len(nodes)]
-            time.sleep(0.02)
-        raise AssertionError(f"a stroke got no answer in {LONG_S} s")
-
-    def send(self, node, edit, headers):
-        """Returns the response, or None if there is none in time."""
-        link = self.links.get(node) or http.client.HTTPConnection(
-            node.host, node.own_port, timeout=ANSWER_S
-        )
-        self.links[node] = link
-        path = f"/models/{self.model['id']}/layers/marks/edits"
-        try:
-            return node.post(path, edit, headers=headers, connection=link)
-        except AWAY:
-            self.links.pop(node).close()
-            return None
+    def __enter__(self):
+        super().__enter__()
+        columns = [{"name": "Report", "kind": "document"}]
+        self.ok("POST", "/projects/default/tables", {"name": "Finds", "columns": columns})
+        self.ok("POST", "/tables/finds/records", {"values": {}})
+        return self
 
 
-class Load:
-    """Painters of one round."""
-
-    def __init__(self, site, model, seed):
-        self.painters = [
-            Painter(site, model, site.nodes[number % NODES], f"{seed} {number}")
-            for number in range(PAINTERS)
-        ]
-        for painter in self.painters:
-            painter.start()
-        self.wait(lambda painter: len(painter.strokes) >= SPARE_STROKES, "the first strokes")
-
-    def wait(self, condition, what):
-        def reached():
-            for painter in self.painters:
-                if painter.failure:
-                    raise painter.failure
-            return all(condition(painter) for painter in self.painters)
-
-        wait_for(reached, what)
-
-    def went_on(self, since, without=None):
-        """Waits until each painter has an acknowledgement, from a node other than `without`, of a
-        stroke that it sent after `since`. Returns the longest of these times."""
-
-        def first(painter):
-            for stroke in list(painter.strokes):
-                if stroke.sent >= since and stroke.node is not without:
-                    return stroke
-            return None
-
-        self.wait(first, "painting to go on")
-        return max(first(painter).at for painter in self.painters) - since
-
-    def acknowledged_by(self, node, begin, end):
-        return sum(
-            stroke.node is node and begin <= stroke.at < end
-            for painter in self.painters
-            for stroke in list(painter.strokes)
-        )
-
-    def end(self):
-        """Returns the strokes of all painters."""
-        for painter in self.painters:
-            painter.stopping.set()
-        for painter in self.painters:
-            painter.join(LONG_S)
-            assert not painter.is_alive(), "a painter still waits for an answer"
-            if painter.failure:
-                raise painter.failure
-        return [stroke for painter in self.painters for stroke in painter.strokes]
-
-
-# --- the faults: each returns its measurements in seconds, and `late` if it applies
+# --- the faults: each returns its measurements, with times in seconds
 
 
 def until_ready(node):
@@ -200,6 +113,11 @@ def drain(_, load, owner):
     return found
 
 
+def until(moment):
+    """Waits although there is no condition, because the fault must last."""
+    time.sleep(max(0, moment - time.monotonic()))
+
+
 def separated(load, owner, begin, end):
     """The owner cannot renew its lease between `begin` and `end`. After the end of the lease,
     painters must get no acknowledgement from the owner."""
@@ -207,7 +125,7 @@ def separated(load, owner, begin, end):
     begin()
     went_on_s = load.went_on(since, owner)
     # after the lease, also if the painters have continued earlier
-    wait_for(lambda: time.monotonic() > since + LEASE_S + 1, "the lease to be over")
+    until(since + LONGER_THAN_LEASE_S)
     late = load.acknowledged_by(owner, since + LEASE_S, time.monotonic())
     end()
     return {"went_on_s": went_on_s, "ready_again_s": until_ready(owner), "late": late}
@@ -219,6 +137,122 @@ def hang(_, load, owner):
 
 def cut(_, load, owner):
     return separated(load, owner, owner.database.cut, owner.database.mend)
+
+
+def browsers(_, load, owner):
+    """The owner keeps its lease, so other nodes can only redirect to it."""
+    owner.clients.cut()
+    # Before this time, a response may have been on its way.
+    cut_off = time.monotonic() + ANSWER_S
+    until(cut_off + LEASE_S)
+    mended = time.monotonic()
+    assert load.acknowledged_by(owner, cut_off, mended) == 0, "the link was not cut"
+    owner.clients.mend()
+    return {"went_on_s": load.went_on(mended)}
+
+
+def gl(_, load, owner):
+    lines = len(owner.log)
+    owner.faults.lose_gl()
+    wait_for(
+        lambda: any("GPU context was lost" in line for line in owner.log[lines:]),
+        "the loss of the GL context",
+    )
+    return {"went_on_s": load.went_on(time.monotonic())}
+
+
+def large_picture(node, model):
+    """Requests a picture that needs much memory. Returns the response, or None if the node closes
+    the connection without one."""
+    camera = camera_from(model, (0, -0.2, 1), 8192, 8192)
+    try:
+        return node.post(f"/models/{model['id']}/frame", {"camera": camera})
+    except TimeoutError:
+        raise  # the node has neither refused nor ended
+    except AWAY:
+        return None
+
+
+def memory(site, load, owner):
+    """The node must refuse, or end as if it was killed."""
+    limit_memory(owner.process.pid)
+    answer = large_picture(owner, load.painters[0].model)
+    assert answer is None or answer.status == 503, answer
+    went_on_s = load.went_on(time.monotonic())
+    has_ended = owner.process.poll() is not None
+    if has_ended:
+        owner.kill()
+        owner.start()
+    else:
+        unlimit_memory(owner.process.pid)
+    until_ready(owner)
+    return {
+        "went_on_s": went_on_s,
+        "refused": int(answer is not None),
+        "process_ended": int(has_ended),
+    }
+
+
+def jump(site, load, owner, seconds):
+    """Leases use the clock of the database and monotonic clocks, so the model stays."""
+    # Edits of earlier rounds have such times, too.
+    edits = f"FROM edits WHERE model_id = {load.painters[0].model['id']}"
+    newest = site.postgres.sql(f"SELECT max(sequence) {edits}")
+    since = time.monotonic()
+    owner.faults.jump_clock(seconds)
+    went_on_s = load.went_on(since)
+    until(since + LONGER_THAN_LEASE_S)
+    direction = "> 1800" if seconds > 0 else "< -1800"
+    jumped = site.postgres.sql(
+        f"SELECT count(*) {edits} AND sequence > {newest} "
+        f"AND extract(epoch FROM time - now()) {direction}"
+    )
+    assert int(jumped) > 0, "the clock did not jump"
+    back = time.monotonic()
+    owner.faults.jump_clock(0)
+    went_on_s = max(went_on_s, load.went_on(back))
+    moved = site.owner(load.painters[0].model["id"]) is not owner
+    return {"went_on_s": went_on_s, "moved": int(moved)}
+
+
+def clock_forward(site, load, owner):
+    return jump(site, load, owner, HOUR_S)
+
+
+def clock_back(site, load, owner):
+    return jump(site, load, owner, -HOUR_S)
+
+
+def upload(node, name):
+    """Each upload has another content, because equal contents are stored once."""
+    path = f"/tables/finds/records/1/attachments?name={name}.pdf&column=report"
+    headers = {"Content-Type": "application/pdf"}
+    return node.post(path, UPLOAD + name.encode(), headers=headers)
+
+
+def full_folder(load, owner, folder):
+    name = f"report-{time.monotonic_ns()}"
+    since = time.monotonic()
+    owner.faults.fill_disk(folder)
+    refused = upload(owner, name)
+    assert refused.status == 507, refused
+    assert refused.json()["type"] == "/problems#storage_full", refused
+    went_on_s = load.went_on(since)
+    owner.faults.empty_disk()
+    stored = upload(owner, name)
+    assert stored.status == 201, stored
+    file = stored.json()["attachments"][-1]["id"]
+    assert owner.ok("GET", f"/attachments/{file}").body == UPLOAD + name.encode()
+    owner.ok("DELETE", f"/attachments/{file}")
+    return {"went_on_s": went_on_s, "refused": 1}
+
+
+def full_files(site, load, owner):
+    return full_folder(load, owner, site.files)
+
+
+def full_uploads(_, load, owner):
+    return full_folder(load, owner, owner.data)
 
 
 def postgres(site, load, _):
@@ -234,66 +268,101 @@ def postgres(site, load, _):
     return {"went_on_s": went_on_s, "restarted_s": restarted_s}
 
 
-FAULTS = {"kill": kill, "drain": drain, "hang": hang, "cut": cut, "postgres": postgres}
+def postgres_hang(site, load, _):
+    begun = time.monotonic()
+    frozen = site.postgres.freeze()
+    # Before this time, a response about an earlier commit may have arrived.
+    stopped = time.monotonic() + ANSWER_S
+    until(begun + LONGER_THAN_LEASE_S)
+    thawed = time.monotonic()
+    late = sum(load.acknowledged_by(node, stopped, thawed) for node in site.nodes)
+    site.postgres.thaw(frozen)
+    found = {"went_on_s": load.went_on(thawed), "late": late}
+    for node in site.nodes:
+        until_ready(node)
+    return found
 
 
-class Journal:
-    """Compares all acknowledgements with the journal, after each round."""
-
-    def __init__(self, site, model):
-        self.site, self.model = site, model
-        self.acknowledged = []
-        self.lost = self.doubled = 0  # in all rounds
-
-    def check(self, strokes):
-        """Adds the strokes of a round. Returns the numbers of lost and doubled strokes in it."""
-        self.acknowledged += [stroke.sequence for stroke in strokes]
-        found = self.site.postgres.sql(
-            f"SELECT coalesce(string_agg(sequence::text, ' '), '') FROM edits WHERE model_id = {self.model['id']}"
-        )
-        journal = set(map(int, found.split()))
-        known = set(self.acknowledged)
-        # if two acknowledgements have the same sequence, one of the strokes is lost
-        lost = len(known - journal) + len(self.acknowledged) - len(known)
-        doubled = len(journal - known)
-        in_round = {"lost": lost - self.lost, "doubled": doubled - self.doubled}
-        self.lost, self.doubled = lost, doubled
-        return in_round
+def slow_disk(site, load, _):
+    since = time.monotonic()
+    site.postgres.faults.slow_disk(DELAY_S)
+    # PostgreSQL measures the time, because psql needs about as long to start
+    site.postgres.sql(
+        "DO $$ DECLARE begun timestamptz := clock_timestamp(); BEGIN "
+        "PERFORM pg_logical_emit_message(true, 'test', 'slow'); COMMIT; "
+        f"IF clock_timestamp() - begun < interval '{DELAY_S} s' THEN "
+        "RAISE 'the disk is not slow'; END IF; END $$"
+    )
+    went_on_s = load.went_on(since)
+    until(since + LONGER_THAN_LEASE_S)
+    went_on_s = max(went_on_s, load.went_on(time.monotonic()))
+    site.postgres.faults.slow_disk(0)
+    return {"went_on_s": went_on_s}
 
 
-def one_round(site, model, journal, name, seed):
-    load = Load(site, model, seed)
-    owner = wait_for(lambda: site.owner(model["id"]), "a node that owns the model")
+def full_database(site, load, _):
+    """PostgreSQL refuses a change that needs more space in a table. It ends if its write-ahead log
+    needs more space."""
+    site.postgres.faults.fill_disk()
+
+    def has_effect():
+        load.check()
+        return load.refused(507) > 0 or site.postgres.process.poll() is not None
+
+    wait_for(has_effect, "a stroke that the full disk refuses")
+    site.postgres.faults.empty_disk()
+    since = time.monotonic()
+    has_ended = site.postgres.process.poll() is not None
+    if has_ended:
+        site.postgres.restart()
+    found = {"went_on_s": load.went_on(since), "refused": load.refused(507)}
+    for node in site.nodes:
+        until_ready(node)
+    return {**found, "process_ended": int(has_ended)}
+
+
+FAULTS = [kill, drain, hang, cut, browsers, gl, memory, clock_forward, clock_back]
+FAULTS += [full_files, full_uploads, postgres, postgres_hang, slow_disk, full_database]
+FAULTS = {fault.__name__: fault for fault in FAULTS}
+
+
+def one_round(site, journal, name, seed):
+    load = Load(site, journal.model, seed, PAINTERS)
+    owner = wait_for(lambda: site.owner(journal.model["id"]), "a node that owns the model")
     found = FAULTS[name](site, load, owner)
     strokes = load.end()
-    return {**found, **journal.check(strokes), "strokes": len(strokes)}
+    memory_mb = max(resident_mb(node) for node in site.nodes)
+    return {
+        **found,
+        **journal.check(strokes),
+        "strokes": len(strokes),
+        "memory_mb": round(memory_mb),
+    }
 
 
-def table(found):
-    lines = [
-        "| fault | promise | painting continues after, p50 | p95 | other times, p50 / p95 | acknowledged | lost | doubled | late |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    for name, rounds in found.items():
-        column = lambda key: [each[key] for each in rounds if key in each]
-        others = [
-            f"{title} {percentile(column(key), 0.5):.1f} / {percentile(column(key), 0.95):.1f} s"
-            for key, title in (
-                ("ended_s", "node ended"),
-                ("ready_again_s", "node ready again"),
-                ("restarted_s", "PostgreSQL answers"),
-            )
-            if column(key)
-        ]
-        times = column("went_on_s")
-        promise = f"≤ {PROMISE_S[name]} s" if PROMISE_S[name] else "—"
-        late = str(sum(column("late"))) if column("late") else "—"
-        sums = " | ".join(str(sum(column(key))) for key in ("strokes", "lost", "doubled"))
-        lines.append(
-            f"| {name} | {promise} | {percentile(times, 0.5):.2f} s | {percentile(times, 0.95):.2f} s "
-            f"| {', '.join(others) or '—'} | {sums} | {late} |"
-        )
-    return "\n".join(lines)
+def replay(journal, record):
+    if journal is not None:
+        record.add_replay(len(journal.strokes), journal.wrong_texels())
+
+
+def run(record, chosen, rounds, seed):
+    name = "start"
+    try:
+        with FaultSite(seed) as site:
+            journal = None
+            # one round of each fault in turn, so a slow hour of the machine affects all faults
+            for _ in range(rounds):
+                for name in chosen:
+                    if journal is None or journal.rounds >= ROUNDS_A_MODEL:
+                        replay(journal, record)
+                        journal = Journal(site)
+                    round_seed = f"{seed} {record.rounds(name)} {name}"
+                    record.add(name, one_round(site, journal, name, round_seed))
+            name = "replay"
+            replay(journal, record)
+    except Exception as error:
+        record.add_failure(name, error)
+        raise
 
 
 def main():
@@ -306,38 +375,16 @@ def main():
     reads.add_argument("--only", default=",".join(FAULTS))
     asked = reads.parse_args()
     chosen = asked.only.split(",")
-    found = {name: [] for name in chosen}
-    with Site(NODES, asked.seed, links=True) as site:
-        model = site.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
-        layer = {"name": "marks", "type": "u8", "resolution": 2048}
-        site.ok("POST", f"/models/{model['id']}/layers", layer)
-        journal = Journal(site, model)
-        # one round of each fault in turn, so a slow hour of the machine affects all faults
-        for number in range(asked.rounds):
-            for name in chosen:
-                result = one_round(site, model, journal, name, f"{asked.seed} {number} {name}")
-                found[name].append(result)
-                print(f"round {number + 1}, {name}: {json.dumps(result)}", flush=True)
-        renderer = gl_renderer(site.nodes[0].binary)
-    print("\n" + table(found))
-    if asked.json:
-        facts = {
-            "machine": {**machine(), "renderer": renderer},
-            "seed": asked.seed,
-            "nodes": NODES,
-            "painters": PAINTERS,
-            "answer_s": ANSWER_S,
-            "faults": found,
-        }
-        with open(asked.json, "w", encoding="utf-8") as file:
-            json.dump(facts, file, indent=1)
-    faults = sum(
-        each.get(key, 0)
-        for rounds in found.values()
-        for each in rounds
-        for key in ("lost", "doubled", "late")
-    )
-    return 1 if faults else 0
+    unknown = set(chosen) - set(FAULTS)
+    if unknown:
+        reads.error(f"no such fault: {', '.join(sorted(unknown))}")
+    if asked.rounds < 1:
+        reads.error("--rounds must be 1 or more")
+    facts = {**machine(), "renderer": gl_renderer(os.environ["STRATA_BINARY"])}
+    record = FaultRecord(asked.json, facts)
+    run(record, chosen, asked.rounds, asked.seed)
+    print("\n" + record.summary())
+    return 1 if record.wrong else 0
 
 
 if __name__ == "__main__":

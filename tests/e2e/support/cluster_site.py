@@ -244,7 +244,11 @@ class ClusterSite:
     def leave_commits_unconfirmed(self, primary):
         """Stops the replication of the primary, and then makes it write commits that no standby
         has. So pg_rewind must repair its PostgreSQL when it starts again."""
-        for pid in self.cluster.psql(primary, "SELECT pid FROM pg_stat_replication").split():
+        senders = wait_for(
+            lambda: self.cluster.psql(primary, "SELECT pid FROM pg_stat_replication").split(),
+            "a standby that receives from the primary",
+        )
+        for pid in senders:
             os.kill(int(pid), signal.SIGSTOP)
         self.cluster.psql(
             primary,

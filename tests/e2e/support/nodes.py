@@ -14,7 +14,8 @@ import threading
 import time
 import urllib.parse
 
-from support.database_link import DatabaseLink
+from support import faulty_libc
+from support.links import DatabaseLink, Link
 from support.live_client import AWAY
 from support.missing import missing
 from support.nginx import free_port
@@ -45,6 +46,7 @@ class SharedPostgres:
         self.data = tempfile.mkdtemp(prefix="strata-nodes-", dir=_place_of_data())
         os.chmod(self.data, 0o755)
         self.process = None
+        self.faults = None  # a FaultyProcess
 
     @property
     def folder(self):
@@ -103,9 +105,29 @@ class SharedPostgres:
             + [word for option in options for word in ("-c", option)],
             preexec_fn=become_owner,
             cwd="/",
+            env={**os.environ, **(self.faults.environment if self.faults else {})},
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
+
+    def processes(self):
+        """Returns the ids of all processes of PostgreSQL, the first one first."""
+        first = self.process.pid
+        with open(f"/proc/{first}/task/{first}/children", encoding="ascii") as file:
+            return [first, *map(int, file.read().split())]
+
+    def freeze(self):
+        """Stops all processes. Returns their ids for `thaw`."""
+        # The first process stops first, so it starts no others.
+        os.kill(self.process.pid, signal.SIGSTOP)
+        frozen = self.processes()
+        for pid in frozen[1:]:
+            os.kill(pid, signal.SIGSTOP)
+        return frozen
+
+    def thaw(self, frozen):
+        for pid in reversed(frozen):
+            os.kill(pid, signal.SIGCONT)
 
     def kill(self):
         """Sends kill -9. PostgreSQL's other processes end by themselves soon after."""
@@ -153,14 +175,16 @@ class SharedPostgres:
 
 class Node(StrataServer):
     """A server process of a site. It keeps its address when it starts again. `database` has a
-    `dsn`."""
+    `dsn`. Painters of a test that cuts links use `client_port`."""
 
     def __init__(self, database, token, url=None, options=()):
         super().__init__()
         self.database = database
         self.share = None  # STRATA_SHARE at the next start
-        self.own_port = free_port()
+        self.own_port = self.client_port = free_port()
         self.listen = f"127.0.0.1:{self.own_port}"
+        self.clients = None  # a Link between browsers and this node
+        self.faults = None  # a FaultyProcess
         self.node_url = url or f"http://127.0.0.1:{self.own_port}"
         self.token = token
         self.options = [
@@ -174,7 +198,8 @@ class Node(StrataServer):
 
     def environment(self):
         own = {"STRATA_SHARE": self.share} if self.share else {}
-        return {**super().environment(), **own}
+        faults = self.faults.environment if self.faults else {}
+        return {**super().environment(), **own, **faults}
 
     def is_ready(self):
         try:
@@ -206,9 +231,10 @@ class Node(StrataServer):
 class Site(Requests):
     """The nodes of a site. Use it in a `with` block. Calls of `ok`, `get` and `post` go to a random
     running node and follow redirections, so a site can replace a server in the helpers of tests.
-    With `links`, each node has its own DatabaseLink (`node.database`)."""
+    With `links`, each node has its own DatabaseLink (`node.database`) and a link for browsers
+    (`node.clients`). With `faults`, PostgreSQL and each node have a FaultyProcess."""
 
-    def __init__(self, count, seed=1, urls=None, options=(), demo=False, links=False):
+    def __init__(self, count, seed=1, urls=None, options=(), demo=False, links=False, faults=False):
         self.postgres = SharedPostgres(demo)
         self.random = random.Random(seed)
         self.lock = threading.Lock()
@@ -216,17 +242,34 @@ class Site(Requests):
         self.host, self.tls = "127.0.0.1", None
         self.count, self.urls, self.options = count, urls, options
         self.with_links, self.links = links, []
+        self.with_faults, self.faults_folder = faults, os.path.join(self.postgres.data, "faults")
         self.nodes = []
 
+    def faults_of(self, disk):
+        """Returns a new FaultyProcess."""
+        library = os.path.join(self.faults_folder, "faulty_libc.so")
+        return faulty_libc.FaultyProcess(library, self.faults_folder, disk)
+
     def __enter__(self):
+        if self.with_faults:
+            os.makedirs(self.faults_folder)
+            faulty_libc.build(self.faults_folder)
+            self.postgres.faults = self.faults_of(self.postgres.folder)
         self.postgres.__enter__()
         try:
             for number in range(self.count):
                 url = self.urls[number] if self.urls else None
+                database = self.postgres
                 if self.with_links:
-                    self.links.append(DatabaseLink(self.postgres))
-                database = self.links[-1] if self.links else self.postgres
+                    database = DatabaseLink(self.postgres)
+                    self.links.append(database)
                 node = Node(database, self.token, url, self.options)
+                if self.with_links:
+                    node.clients = Link(("127.0.0.1", node.own_port))
+                    node.client_port = node.clients.port
+                    self.links.append(node.clients)
+                if self.with_faults:
+                    node.faults = self.faults_of(node.data)
                 self.nodes.append(node)
                 node.__enter__()
         except BaseException:

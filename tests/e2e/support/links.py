@@ -1,27 +1,26 @@
-"""A connection between a node and its PostgreSQL that a test can cut."""
+"""Connections that a test can cut: between a node and its PostgreSQL, and between browsers and a
+node."""
 import os
 import socket
 import threading
 
 
-class DatabaseLink:
-    """A TCP address on the loopback interface that leads to the Unix socket of a PostgreSQL.
+class Link:
+    """A TCP address on the loopback interface that leads to the address of another socket.
 
     `cut` has the effect of an unplugged cable: no byte passes in either direction, also on new
-    connections, and nothing is closed. `mend` delivers the held bytes in their order, so PostgreSQL
-    may receive a statement long after the node has given it up."""
+    connections, and nothing is closed. `mend` delivers the held bytes in their order, so the target
+    may receive a request long after the sender has given it up."""
 
-    def __init__(self, postgres):
-        self.target = os.path.join(postgres.folder, ".s.PGSQL.5432")
+    def __init__(self, target):
+        """`target`: a path of a Unix socket, or a host and a port."""
+        self.target = target
+        self.family = socket.AF_UNIX if isinstance(target, str) else socket.AF_INET
         self.flows = threading.Event()
         self.flows.set()
         self.listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self.listener.getsockname()[1]
         threading.Thread(target=self._accept, daemon=True).start()
-
-    @property
-    def dsn(self):
-        port = self.listener.getsockname()[1]
-        return f"host=127.0.0.1 port={port} user=strata dbname=strata sslmode=disable"
 
     def cut(self):
         self.flows.clear()
@@ -30,7 +29,7 @@ class DatabaseLink:
         self.flows.set()
 
     def close(self):
-        """Accepts no more connections. Open connections end with the node or with PostgreSQL."""
+        """Accepts no more connections. Open connections end with one of their two ends."""
         self.mend()
         # wakes the thread, which would otherwise keep the socket open
         self.listener.shutdown(socket.SHUT_RDWR)
@@ -46,12 +45,14 @@ class DatabaseLink:
 
     def _serve(self, client):
         self.flows.wait()
-        with client, socket.socket(socket.AF_UNIX) as server:
+        with client, socket.socket(self.family) as server:
             try:
                 server.connect(self.target)
                 client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                if self.family == socket.AF_INET:
+                    server.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             except OSError:
-                return  # PostgreSQL is down, or the client is gone
+                return  # the target is down, or the client is gone
             back = threading.Thread(target=self._pass_on, args=(server, client), daemon=True)
             back.start()
             self._pass_on(client, server)
@@ -70,3 +71,14 @@ class DatabaseLink:
                 end.shutdown(socket.SHUT_RDWR)
             except OSError:
                 pass  # already closed
+
+
+class DatabaseLink(Link):
+    """A link to the Unix socket of a PostgreSQL."""
+
+    def __init__(self, postgres):
+        super().__init__(os.path.join(postgres.folder, ".s.PGSQL.5432"))
+
+    @property
+    def dsn(self):
+        return f"host=127.0.0.1 port={self.port} user=strata dbname=strata sslmode=disable"
