@@ -14,10 +14,15 @@ std::string label_slug(const std::string& language) { return std::string(kLabel)
 std::optional<std::string> label_language(std::string_view slug) {
   if (!slug.starts_with(kLabel)) return std::nullopt;
   const std::string_view tag = slug.substr(kLabel.size());
-  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz0123456789-";
-  const bool is_tag = !tag.empty() && tag.size() <= 35 && tag.front() != '-' && tag.back() != '-' &&
+  // As in Turtle, the first part has only letters. Otherwise, an exported list could not be read
+  // again.
+  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789-";
+  constexpr std::string_view kLetters = kAllowed.substr(0, 26);
+  const std::string_view first = tag.substr(0, tag.find('-'));
+  const bool is_tag = !first.empty() && tag.size() <= 35 && tag.back() != '-' &&
                       tag.find("--") == std::string_view::npos &&
-                      tag.find_first_not_of(kLetters) == std::string_view::npos;
+                      first.find_first_not_of(kLetters) == std::string_view::npos &&
+                      tag.find_first_not_of(kAllowed) == std::string_view::npos;
   if (!is_tag) return std::nullopt;
   return std::string(tag);
 }

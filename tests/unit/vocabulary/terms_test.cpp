@@ -101,6 +101,21 @@ TEST(TermsSkos, entities_that_grow_are_refused_and_files_are_not_read) {
   EXPECT_THAT(fetched.error().detail, HasSubstr("entity"));
 }
 
+TEST(TermsSkos, a_language_that_turtle_cannot_write_is_left_out) {
+  const auto list = read_terms_skos(
+      R"(<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#" xmlns:skos="http://www.w3.org/2004/02/skos/core#">)"
+      R"(<skos:Concept rdf:about="http://t.example/x"><skos:prefLabel xml:lang="6en">Loss</skos:prefLabel></skos:Concept></rdf:RDF>)",
+      RdfSyntax::rdf_xml);
+  ASSERT_TRUE(list);
+  EXPECT_EQ(list->left_out, 1u);
+  ASSERT_EQ(list->terms.size(), 1u);
+  EXPECT_EQ(list->terms[0].label, "Loss");
+  EXPECT_TRUE(list->terms[0].labels.empty());
+  const auto written = terms_skos("Terms", list->terms);
+  ASSERT_TRUE(written);
+  EXPECT_TRUE(read_terms_skos(*written, RdfSyntax::turtle));
+}
+
 TEST(TermsSkos, a_circle_of_broader_terms_is_read_as_it_is) {
   const auto list = read_terms_skos(
       turtle("t:a a skos:Concept; skos:broader t:b . t:b skos:broader t:a ."), RdfSyntax::turtle);
