@@ -24,7 +24,8 @@ double quality_of(std::string_view parameters) {
     double quality = 0;
     const char* end = parameter.data() + parameter.size();
     const auto read = std::from_chars(parameter.data() + 2, end, quality);
-    return read.ec == std::errc() && read.ptr == end ? quality : 0;
+    const bool is_valid = read.ec == std::errc() && read.ptr == end && quality >= 0 && quality <= 1;
+    return is_valid ? quality : 0;  // not a number compares as false
   }
   return 1;
 }

@@ -226,6 +226,8 @@ TEST(Accept, takes_a_type_by_its_closest_range) {
   EXPECT_FALSE(accepts_type("image/*", "text/csv"));
   EXPECT_FALSE(accepts_type("application/json", "application/xml"));
   EXPECT_FALSE(accepts_type(",;q=x", "application/json"));
+  for (const char* quality : {"8.1", "-0.5", "nan", "inf"})
+    EXPECT_FALSE(accepts_type(std::string("*/*;q=") + quality, "application/json")) << quality;
 }
 
 // --- Points
