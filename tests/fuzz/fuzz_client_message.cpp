@@ -73,9 +73,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto fast = read_json_fast(text, JsonLimits{}.max_depth))
     demand(*fast == nlohmann::json::parse(text));
   if (const auto json = parse_json(text)) {
-    read_bodies<Edit, Empty, FrameRequest, LayerCreate, LayerPatch, Login, LookPatch, ModelPatch,
-                PickRequest, PositionsRequest, ProjectCreate, ProjectPatch, Restore, ToolPatch,
-                Transfer>(*json);
+    read_bodies<AttachmentMatch, AttachmentPatch, ColumnCreate, ColumnPatch, CommentCreate,
+                CommentPatch, CrossTableRequest, DifferenceRequest, Edit, Empty, FigureRequest,
+                FrameRequest, GroupCreate, GroupPatch, Highlight, InvitationAccept, InvitationShow,
+                KioskCreate, KioskLogin, KioskPatch, LayerCreate, LayerPatch, LogLevels, Login,
+                LookPatch, MePatch, MemberPut, ModelPatch, PasswordChange, PersonCreate,
+                PersonPatch, PersonalView, PickRequest, PositionsRequest, ProfileRequest,
+                ProjectCreate, ProjectPatch, RecordPatch, RecordsCreate, ReplyCreate, Restore,
+                ScriptTokenCreate, SectionRequest, SelectRequest, SnapshotCreate, SnapshotPatch,
+                TableCreate, TablePatch, Template, TemplateUse, ToolPatch, TourCreate, TourPatch,
+                Transfer, ViewCreate, ViewPatch>(*json);
+    // has no member for its constant `all`, so it cannot be written again
+    (void)from_json<Review>(*json);
     (void)parse_server_message(text);
   }
   return 0;

@@ -1,5 +1,6 @@
-// Fuzzes all parsers of the short texts in requests: targets and their queries, cookies, origins,
-// points, ids, world files, tables of readings, and keys of colors.
+// Fuzzes all parsers of the short texts in requests and settings: targets and their queries,
+// headers, times, points, lines, ids, patterns of file names, world files, tables of readings, keys
+// of colors, and levels of the log.
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -7,9 +8,17 @@
 #include <string>
 #include <string_view>
 
+#include "core/log_levels.h"
+#include "core/text/name_pattern.h"
 #include "core/text/percent.h"
+#include "core/text/timestamp.h"
+#include "core/text/url.h"
 #include "core/text/utf8.h"
+#include "core/trace.h"
 #include "core/uuid.h"
+#include "domain/tables/surface_feature.h"
+#include "net/http/accept.h"
+#include "net/http/byte_range.h"
 #include "net/http/http_types.h"
 #include "net/http/origin.h"
 #include "net/http/page.h"
@@ -61,6 +70,51 @@ void read_headers(std::string_view text) {
   const auto half = text.size() / 2;
   (void)net::is_own_origin(text.substr(0, half), text.substr(half), {"https://site.example/"},
                            text.size() % 2 == 0);
+  constexpr std::uint64_t kBytes = 1000;
+  if (const auto requested = net::requested_range(text, kBytes)) {
+    const net::ByteRange& range = requested->range;
+    demand(range.begin < range.end && range.end <= kBytes);
+    demand(requested->is_part || (range.begin == 0 && range.end == kBytes));
+  }
+  for (const auto& accepted : net::accepted_values(text))
+    demand(accepted.quality >= 0 && accepted.quality <= 1);
+  (void)net::accepts_type(text, "application/geo+json");
+  if (const auto context = parse_traceparent(text))
+    demand(parse_traceparent(to_traceparent(*context)) == context);
+  if (is_safe_url(text)) demand(text.starts_with("https://") || is_loopback_url(text));
+}
+
+void read_times(std::string_view text) {
+  (void)day_of(text);
+  const auto utc = utc_timestamp(text);
+  if (utc) demand(utc_timestamp(*utc) == utc);
+  demand(parse_time(text).has_value() == utc.has_value());
+}
+
+void read_names(std::string_view text) {
+  if (const auto levels = log::parse_levels(text)) {
+    const auto again = log::parse_levels(log::to_string(*levels));
+    demand(again.has_value() && *again == *levels);
+  }
+  const auto half = text.size() / 2;
+  const auto pattern = NamePattern::parse(text.substr(0, half), "pattern");
+  if (!pattern) return;
+  const std::string_view name = text.substr(half);
+  for (const std::string_view word : {"code", "n"}) {
+    if (!pattern->has(word)) continue;
+    const auto is_known = [](std::string_view value) { return value.size() % 2 == 0; };
+    if (const auto reading = pattern->read(name, word, is_known))
+      demand(reading->is_known == is_known(reading->words.at(std::string(word))));
+  }
+}
+
+void read_places(std::string_view text) {
+  for (const bool lines : {false, true}) {
+    const auto features = parse_features(text, lines);
+    if (!features) continue;
+    demand(features->size() <= kMaxFeatures);
+    demand(parse_features(print_features(*features, lines), lines) == features);
+  }
 }
 
 void read_numbers(std::string_view text) {
@@ -107,6 +161,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   read_target(text);
   read_headers(text);
+  read_times(text);
+  read_names(text);
+  read_places(text);
   read_numbers(text);
   read_tables(text);
   return 0;

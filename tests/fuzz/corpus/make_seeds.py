@@ -421,6 +421,15 @@ TEXT = {
     "colors": b'{"#c02020": 1, "#2040c0ff": 2.5}',
     "readings_comma.csv": b"x,y,z,value\n1,2,3,4\n-1e3,+.5,0,1e-9\n",
     "readings_quoted.csv": b'\xef\xbb\xbf"Value";"Z";"note";"Y";"X"\r\n"1";2;"a";3;4\r\n\r\n5;6;;7;8',
+    "range": b"bytes=10-500",
+    "accept": b"text/csv;q=0.5, application/json, */*;q=0.1",
+    "traceparent": b"00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01",
+    "time": b"2026-11-28T09:30:15.250+01:00",
+    "levels": b"warning,store=debug,net=info",
+    "pattern": b"{code}_{view}-{n}.jpgWall-03_west_front-12.jpg",
+    "lines": b"3 LINESTRING Z (0 0 1, 2.5 0 1)",
+    "points": b"3 POINT Z (1 2 3); 4 POINT Z (-1e3 .5 0)",
+    "url": b"http://127.0.0.1:8080/a",
 }
 EXPRESSION = {
     "condition": b'0.3 <= depth * 2 and not (valid("2020 survey") or salt-2 <> 4e-1)',
@@ -444,6 +453,21 @@ PICTURE = {
     ),
     "alpha.tif": maps.tiff(3, 2, lambda x, y: (255, x, y, 255 * (x > 0)), kind="B", samples=4),
     "numbers.tif": maps.tiff(3, 2, lambda x, y: x / 3),
+}
+# Exif with the orientation 6, in the byte order of Motorola, after the first marker of a JPEG.
+EXIF = b"\xff\xe1\0\x22Exif\0\0MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\6\0\0\0\0\0\0"
+ATTACHMENT = {
+    "rgba.png": PICTURE["rgba.png"],
+    "progressive.jpg": PICTURE["progressive.jpg"],
+    "turned.jpg": PICTURE["grey.jpg"][:2] + EXIF + PICTURE["grey.jpg"][2:],
+    "lossy.webp": PICTURE["lossy.webp"],
+    "grey.tif": PICTURE["grey.tif"],
+    "report.pdf": b"%PDF-1.4\n1 0 obj\n<<>>\nendobj\ntrailer\n<<>>\n%%EOF\n",
+    "page.html": b"<!DOCTYPE html><html><script>1</script></html>",
+    "drawing.svg": b'<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg"/>',
+    "notes.txt": "Risse in der Südwand\n".encode(),
+    "parts.zip": b"PK\3\4" + bytes(26),
+    "film.mp4": b"\0\0\0\x18ftypisom\0\0\2\0isommp42",
 }
 stripes = lambda x, y: (x, (y // 40) % 2)
 numpy_head = b"{'descr': [('value', '<f4'), ('valid', '|b1')], 'fortran_order': False, 'shape': (128, 128), }\n"
@@ -508,8 +532,65 @@ SIGN_ON = {
     b'"client_id":"strata","accounts":{"claim":"/a/b","values":["c"]},"roles":{"claim":"r","map":'
     b'{"s":"curator"}},"groups":{"claim":"g","map":{"h":"Students"}}}]}',
 }
+PROVIDER = {  # the first byte selects the status of the replies, and each line is a reply
+    "sign_in": b"\0"
+    b'{"issuer":"https://a.example","authorization_endpoint":"https://a.example/auth",'
+    b'"token_endpoint":"https://a.example/token","jwks_uri":"https://a.example/keys",'
+    b'"token_endpoint_auth_methods_supported":["client_secret_post"]}\n'
+    b'{"id_token":"eyJhbGciOiJFUzI1NiJ9.eyJpc3MiOiJqb2UifQ.AAAA","access_token":"b",'
+    b'"token_type":"Bearer"}\n'
+    b'{"keys":[{"kty":"EC","crv":"P-256","x":"f83OJ3D2xF1Bg8vub9tLe1gHMzV76e8Tus9uPHvRVEU",'
+    b'"y":"x_FEzRu9m36HLN_tue659LNpXW6pCyStikYjKIWI5a0"}]}\n',
+    "error": b'\1{"error":"invalid_grant","error_description":"expired"}',
+    "claims": b'\0{"sub":"1","preferred_username":"ada","a":{"b":["c"]},"r":["s"],"g":"h"}',
+}
+STORED = {
+    "list.xml": b'<?xml version="1.0"?><ListBucketResult><IsTruncated>true</IsTruncated><Contents>'
+    b"<Key>site/" + b"ab/" * 2 + b"ab" * 32 + b"</Key><LastModified>2026-11-28T09:30:15.000Z"
+    b"</LastModified><Size>12</Size></Contents></ListBucketResult>",
+    "refused.xml": b"<Error><Code>AccessDenied</Code><Message>no</Message></Error>",
+    "mark": b'{"format":1,"id":"123e4567-e89b-12d3-a456-426614174000","owner":"7/16384"}',
+    "segment": b"000000010000000A000000FF",
+    "backup_label": b"START WAL LOCATION: 0/2000060 (file 000000010000000000000002)\n",
+    "bucket": b"museum/stratahttps://s3.example:9000",
+    "manifest": b'{"format":1,"made":"2026-11-28T09:30:15.000Z","schema_version":70,'
+    b'"postgresql":"15.1","dump":{"bytes":3,"sha256":"00"},"tables":{"public.edits":{"rows":1,'
+    b'"digest":"1"}},"sequences":{"public.ids":2},"files":{"count":1,"bytes":2,"place":"/f"}}',
+}
+TERMS = {  # the first byte selects the format
+    "turtle": b"\0@prefix skos: <http://www.w3.org/2004/02/skos/core#> .\n"
+    b"@prefix t: <https://terms.example/stone/> .\n"
+    b't:loss a skos:Concept ; skos:prefLabel "Loss"@en, "P\xc3\xa9rdida"@es .\n'
+    b't:worn skos:notation "W1" ; skos:prefLabel "Worn" ; skos:broader t:loss .\n',
+    "rdf_xml": b'\1<?xml version="1.0"?><!DOCTYPE rdf:RDF [<!ENTITY skos '
+    b'"http://www.w3.org/2004/02/skos/core#">]>'
+    b'<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#" xmlns:skos="&skos;">'
+    b'<skos:Concept rdf:about="https://terms.example/loss"><skos:prefLabel xml:lang="en">Loss'
+    b"</skos:prefLabel></skos:Concept></rdf:RDF>",
+    "csv": b"\2code,parent,label,label-es,definition,uri,color,pattern\n"
+    b"loss,,Loss,P\xc3\xa9rdida,Missing.,https://terms.example/loss,#C02,hatch\n"
+    b"worn,loss,Worn,,,,,\n",
+}
+VERTICES = {  # the first byte selects the file
+    "numbers.csv": b"\0quality\n1\n\n3,5\n",
+    "scan.ply": b"\1ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+    b"property float z\nproperty float quality\nend_header\n0 0 0 1\n1 0 0 nan\n0 1 0 3.5\n",
+    "scan.obj": b"\1v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+}
+RECORDS = {
+    "comma.csv": b"key,text,integer,numeric,boolean,date,enumeration,period\n"
+    b'1,"a ""b""",-3,1.5,true,2026-11-28,one,2026~\n,=1,,,no,,two,\n',
+    "semicolon.csv": b"\xef\xbb\xbfkey;version;numeric;relation;line;point;url;timestamp\r\n"
+    b"2;1;1,5;1 2;3 LINESTRING Z (0 0 1, 2.5 0 1);3 POINT Z (1 2 3);https://a.example;"
+    b"2026-11-28T09:30:15Z\r\n",
+}
 for folder, seeds in (
     ("sign_on", SIGN_ON),
+    ("provider", PROVIDER),
+    ("stored", STORED),
+    ("terms", TERMS),
+    ("vertices", VERTICES),
+    ("records", RECORDS),
     ("stl", STL),
     ("gltf", GLTF),
     ("mtl", MTL),
@@ -519,6 +600,7 @@ for folder, seeds in (
     ("text", TEXT),
     ("expression", EXPRESSION),
     ("picture", PICTURE),
+    ("attachment", ATTACHMENT),
     ("raster", RASTER),
     ("revision", REVISION),
     ("csv", CSV),
