@@ -569,6 +569,13 @@ test(`memory stays flat over ${kRounds} visitors`, async () => {
   };
   const told = ({ heap_mb, nodes, listeners, server_mb: rss }) =>
     `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
+  /** The slope of the line of least squares through the samples, in MB a day. */
+  const growth = (samples, name) => {
+    const mean = (of) => samples.reduce((sum, each) => sum + of(each), 0) / samples.length;
+    const [day, mb] = [mean((each) => each.days), mean((each) => each[name])];
+    const spread = mean((each) => (each.days - day) ** 2);
+    return mean((each) => (each.days - day) * (each[name] - mb)) / spread;
+  };
   await cdp.send("Performance.enable");
   // each stop, with the smallest number of cameras that the page sends on the way to it
   const kStops = [
@@ -609,16 +616,24 @@ test(`memory stays flat over ${kRounds} visitors`, async () => {
   const clock = () => page.evaluate(() => performance.now());
   const from_ms = await clock();
   const cameras_before = cameras;
+  const samples = []; // of the second half
   for (let round = 1; round <= kRounds; ++round) {
     await visit(kTours);
-    if (kRounds > 20 && round === Math.floor(kRounds / 2)) settled = await used();
-    if (round % 10 === 0) console.log(`  after ${round} visitors: ${told(await used())}`);
+    const now = await used();
+    if (kRounds > 20 && round === Math.floor(kRounds / 2)) settled = now;
+    if (round >= kRounds / 2)
+      samples.push({ ...now, days: ((await clock()) - from_ms) / 86_400_000 });
+    if (round % 10 === 0) console.log(`  after ${round} visitors: ${told(now)}`);
   }
   const after = await used();
   const hours = ((await clock()) - from_ms) / 3600_000;
   console.log(
     `  before: ${told(first)}\n  after ${kRounds} visitors in ${hours.toFixed(1)} h of the page's clock, with ${kRounds * kTours * 2} ways of ${cameras - cameras_before} cameras: ${told(after)}`,
   );
+  if (kRounds > 20)
+    console.log(
+      `  growth for a day of the page's clock: page ${growth(samples, "heap_mb").toFixed(2)} MB, server ${growth(samples, "server_mb").toFixed(2)} MB`,
+    );
   assert.ok(after.heap_mb - settled.heap_mb < kMostHeapGrowth, "the page's memory grows");
   assert.ok(
     after.nodes - settled.nodes < kMostNodeGrowth &&
