@@ -5,9 +5,9 @@
 //
 //     STRATA_BINARY=build/release/bin/strata tests/bench/page_faults.mjs [--rounds N] [--output FOLDER]
 //
-// Prints a Markdown table, and writes a sheet of pictures for each fault to FOLDER
-// (node_killed.jpg, primary_killed.jpg): both pages every half second, from the fault until both
-// paint again.
+// Prints a Markdown table, and writes pictures of both pages to FOLDER: every half second, from the
+// fault of the first round until both pages paint again. For each fault, there is a folder with all
+// pictures, and a sheet (node_killed.jpg, primary_killed.jpg).
 //
 // seconds   from the kill until both pages have drawn a batch of a stroke that they first sent after
 //           the kill, and that is saved
@@ -177,7 +177,13 @@ class Film {
   }
 }
 
-async function write_sheet(film, title, seconds, file) {
+/** Writes the pictures to a folder, and the sheet with all of them next to it. */
+async function write_pictures(film, title, seconds) {
+  const folder = join(output, title.replaceAll(" ", "_"));
+  mkdirSync(folder, { recursive: true });
+  for (const { seconds: at, pictures } of film.rows)
+    for (const [page, picture] of pictures.entries())
+      writeFileSync(join(folder, `${at.toFixed(1).padStart(5, "0")}_${page + 1}.jpg`), picture);
   const shot = (picture) =>
     `<img width="${kWidth}" src="data:image/jpeg;base64,${picture.toString("base64")}">`;
   const figures = film.rows.map(
@@ -198,7 +204,7 @@ async function write_sheet(film, title, seconds, file) {
       Promise.all([...document.images].map((image) => image.decode())),
     );
     writeFileSync(
-      file,
+      `${folder}.jpg`,
       await browser.page.screenshot({ type: "jpeg", quality: 70, fullPage: true }),
     );
   } finally {
@@ -233,8 +239,9 @@ async function measure(site, people, part) {
   const begun = Date.now();
   const film = new Film(people);
   await site.command("kill", killed);
+  const ended = Date.now(); // before this time, the part may have saved a batch
   const painted = await wait_for(() => {
-    const times = people.map(({ batches }) => batches.painted_since(begun));
+    const times = people.map(({ batches }) => batches.painted_since(ended));
     return times.includes(undefined) ? null : times;
   }, "both pages to paint again");
   await film.finish();
@@ -303,8 +310,7 @@ try {
       before = total;
       rounds[event].push(found);
       console.error(`round ${round}, ${event}: ${JSON.stringify(found)}`);
-      if (round === 1)
-        await write_sheet(film, event, seconds, join(output, `${event.replaceAll(" ", "_")}.jpg`));
+      if (round === 1) await write_pictures(film, event, seconds);
     }
   console.log(table(rounds));
   process.exitCode = before.lost + before.doubled > 0 ? 1 : 0;
