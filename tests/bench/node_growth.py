@@ -10,7 +10,9 @@ docs/how-to/run-several-nodes.md. Each node may use the same share of the proces
 control group limits it), so a node has the same speed in all cases, as if it had its own machine.
 PostgreSQL, nginx and the clients use the rest. Each case starts new nodes. Two loads:
 
-models   each painter has its own model; the viewers are distributed over these models
+models   each painter has its own model; the viewers are distributed over these models. Of several
+         models, the script chooses those that nginx distributes evenly over the nodes, as it does
+         on average with many models.
 one      one painter; all viewers look at the same model, and nginx distributes them over the nodes.
          With --followers off, the nodes send the viewers to the owner.
 
@@ -26,16 +28,21 @@ MiB a viewer   the same for each viewer after that
 all drawn      time until all viewers have a picture, after the first of them connected
 at rest        cores that all nodes use while nobody paints
 
-Prints Markdown tables. Exits with 1 if a client was disconnected or a batch was refused. Needs
-Debian's Python with pytest, because it uses the helpers of the end-to-end tests, and root.
+Prints Markdown tables. Exits with 1 if a client was disconnected, a batch was refused, or a painter
+has changed no texel. Needs Debian's Python with pytest, because it uses the helpers of the
+end-to-end tests, and root.
 """
 import argparse
 import bisect
+import collections
 import contextlib
+import http.client
+import itertools
 import json
 import math
 import os
 import random
+import re
 import sys
 import tempfile
 import threading
@@ -63,6 +70,7 @@ RADIUS_PX, BATCH_PX, BATCHES = 20, 12, 20  # of a stroke
 PAUSE_S = 0.03
 REST_S = 5
 RESOLUTION = 2048
+CHOICE = 3  # models for each painter
 
 
 class Nodes(contextlib.ExitStack):
@@ -75,7 +83,7 @@ class Nodes(contextlib.ExitStack):
         url = f"http://127.0.0.1:{self.port}/node/"
         self.nodes = [Node(postgres, TOKEN, url + name, options) for name in NAMES[:count]]
         self.front = types.SimpleNamespace(host="127.0.0.1", port=self.port, tls=None, token=TOKEN)
-        self.nginx = None
+        self.nginx = self.log = None
 
     def __enter__(self):
         super().__enter__()
@@ -86,12 +94,45 @@ class Nodes(contextlib.ExitStack):
                 self.enter_context(ProcessorShare(node.process.pid, self.share))
             folder = self.enter_context(tempfile.TemporaryDirectory(dir="/tmp"))
             os.chmod(folder, 0o755)
-            site = site_of_nodes(self.port, [node.own_port for node in self.nodes], self.spread)
-            self.nginx = self.enter_context(Nginx(folder, site, self.port))
+            self.log = os.path.join(folder, "access.log")
+            self.nginx = self.enter_context(Nginx(folder, self._site(), self.port))
         except BaseException:
             self.close()
             raise
         return self
+
+    def _site(self):
+        """Returns the configuration of nginx, which also logs the node of each request."""
+        site = site_of_nodes(self.port, [node.own_port for node in self.nodes], self.spread)
+        logged, found = re.subn(
+            r"(?m)^(  client_max_body_size .*)$", rf"\1\n  access_log {self.log} node;", site
+        )
+        assert found == 1
+        return "log_format node '$upstream_addr';\n" + logged
+
+    def choose(self, models, count):
+        """Returns `count` of the models, and the same number of them for each node, if possible.
+        Opens no model, because the requests are refused."""
+        places = collections.defaultdict(list)
+        for number, model in enumerate(models, 1):
+            with contextlib.closing(http.client.HTTPConnection("127.0.0.1", self.port)) as link:
+                link.request("GET", f"/api/v1/models/{model['id']}")
+                assert link.getresponse().status == 401
+            places[wait_for(lambda: self._logged(number), "the log of nginx")].append(model)
+        turns = itertools.zip_longest(*places.values())
+        return [model for turn in turns for model in turn if model][:count]
+
+    def _logged(self, count):
+        """Returns the last line of the log of nginx when it has so many lines."""
+        with open(self.log, encoding="ascii") as file:
+            lines = file.read().split()
+        return lines[-1] if len(lines) >= count else None
+
+    def stop(self):
+        """Ends the nodes, so their models have no owner when the next case begins."""
+        for node in self.nodes:
+            assert node.stop() == 0, "SIGTERM did not end the node well"
+            node.assert_clean_log()
 
     def mb(self):
         """Returns the memory of all nodes once they rest."""
@@ -199,7 +240,7 @@ class Painter(threading.Thread):
 
     def run(self):
         try:
-            value = 0
+            value = self.random.randint(1, 6)
             while not self.stopping.is_set():
                 value = value % 6 + 1
                 self.stroke(value)
@@ -245,7 +286,8 @@ def view(model, number, of):
 
 
 def paint(nodes, clients, viewers, seconds, seed):
-    """Lets all clients paint. Returns the times and rates until the viewers have the last pixels."""
+    """Lets all clients paint. Returns the times and rates until the viewers have the last pixels.
+    Each case needs another seed: a stroke that is painted again changes no texels."""
     painters = [Painter(client, f"{seed} {number}") for number, client in enumerate(clients)]
     cores, begun = Cores(nodes), time.monotonic()
     for painter in painters:
@@ -257,12 +299,13 @@ def paint(nodes, clients, viewers, seconds, seed):
         painter.join()
     painted_s = time.monotonic() - begun
     assert not Client.faults, Client.faults[:5]
+    assert all(painter.batches for painter in painters), "a painter has changed no texel"
     own, others = [], []
     for painter in painters:
         client = painter.client
         own += [client.shown_at(sequence) - sent for sent, sequence in painter.batches]
         for viewer in viewers:
-            if viewer.model is client.model and painter.batches:
+            if viewer.model is client.model:
                 viewer.until_shown(painter.batches[-1][1])
                 others += [viewer.shown_at(sequence) - sent for sent, sequence in painter.batches]
     used, end = cores.end(), time.monotonic()
@@ -307,6 +350,7 @@ def measure(nodes, models, asked, seed, token=TOKEN):
     }
     stayed = [client.leave() for client in [*viewers, *clients]]
     assert all(stayed) and not Client.faults, (stayed, Client.faults[:5])
+    nodes.stop()
     return found
 
 
@@ -413,16 +457,18 @@ def main():
         print(json.dumps(case), file=sys.stderr, flush=True)
 
     with SharedPostgres() as postgres:
-        models, vera = make_models(postgres, asked.painters, asked.cells)
+        models, vera = make_models(postgres, CHOICE * asked.painters, asked.cells)
         for count in counts:
             with Nodes(postgres, count, asked.share) as nodes:
-                figures = measure(nodes, models, asked, asked.seed)
+                chosen = nodes.choose(models, asked.painters)
+                figures = measure(nodes, chosen, asked, f"{asked.seed} {len(found)}")
                 note(load="models", nodes=count, **figures)
         for count in counts:
             for followers in filter(None, asked.followers.split(",")):
                 options = ["--followers", followers]
                 with Nodes(postgres, count, asked.share, spread=True, options=options) as nodes:
-                    figures = measure(nodes, models[:1], asked, asked.seed, vera)
+                    seed = f"{asked.seed} {len(found)}"
+                    figures = measure(nodes, models[:1], asked, seed, vera)
                     note(load="one", nodes=count, followers=followers, **figures)
     print_tables(found)
     if asked.json:
