@@ -93,6 +93,7 @@ class Loss:
         """`saved`: all acknowledged strokes. `known`: the sequences before the painters began.
         `found`: the sequences of the restored site."""
         before = sorted((at, sequence) for at, sequence in saved if at <= self.at)
+        assert before, "nothing was painted before the loss"
         there, sent = set(found), {sequence for _, sequence in saved}
         lost = [(at, sequence) for at, sequence in before if sequence not in there]
         return {
@@ -126,7 +127,9 @@ def lose(server, archive, camera, asked, folder):
     for number in range(asked.losses):
         end += chance.uniform(*BETWEEN_LOSSES_S)
         while time.monotonic() < end:
-            assert not any(painter.failure for painter in painters), painters[0].failure
+            for painter in painters:
+                if painter.failure:
+                    raise painter.failure
             time.sleep(0.01)
         losses.append(Loss(archive, os.path.join(folder, f"lost-{number}")))
         print(f"loss {number + 1} of {asked.losses}", file=sys.stderr, flush=True)
