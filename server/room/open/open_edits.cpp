@@ -75,9 +75,10 @@ Result<void> OpenRoom::EditsPart::keep_sums(LayerId layer_id) {
   if (!map) return tl::unexpected(map.error());
   return room_.exclusively<void>(
       [this, layer = found.layer, mirror = found.mirror, map = *map]() -> Result<void> {
-        const auto snapshot = mirror->snapshot();
-        return room_.services_.store.layers().keep_sums(
-            layer.id, sum_tiles(layer, *map, {snapshot.tiles.begin(), snapshot.tiles.end()}));
+        std::vector<store::TileKeys> sums;
+        for (const auto& [address, tile] : mirror->snapshot().tiles)
+          sums.push_back({address, sum_tile(layer, *map, address, *tile)});
+        return room_.services_.store.layers().keep_sums(layer.id, std::move(sums));
       });
 }
 

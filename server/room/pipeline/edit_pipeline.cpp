@@ -493,10 +493,8 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
     entry.revisions.push_back(std::move(revision));
   }
   if (map) {
-    std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>> after(tiles.begin(),
-                                                                               tiles.end());
-    entry.sum_tiles = [map, about = layer.layer, after = std::move(after)] {
-      return sum_tiles(about, *map, after);
+    entry.sum_tile = [map, about = layer.layer, after = std::move(tiles)](TileAddress address) {
+      return sum_tile(about, *map, address, *after.at(address));
     };
   }
 

@@ -159,20 +159,16 @@ std::vector<TileAddress> differing_tiles(const TileMap& a, const TileMap& b) {
   return addresses;
 }
 
-std::vector<store::TileKeys> sum_tiles(
-    const Layer& layer, const mesh::SurfaceMap& map,
-    const std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>& tiles) {
+std::vector<store::KeySum> sum_tile(const Layer& layer, const mesh::SurfaceMap& map,
+                                    TileAddress address, const TileData& tile) {
   const bool apart = query::tells_keys_apart(layer);
-  std::vector<store::TileKeys> out;
-  for (const auto& [address, tile] : tiles) {
-    store::TileKeys& of_tile = out.emplace_back(store::TileKeys{address, {}});
-    for (const auto& key : query::surface_keys(*tile, address, layer, map)) {
-      const auto value = static_cast<std::int64_t>(decode_value(layer.type, key.bits));
-      of_tile.keys.push_back({apart ? std::optional(value) : std::nullopt, key.texels,
-                              key.area.value(), key.weighted_position, key.lowest, key.highest});
-    }
+  std::vector<store::KeySum> sums;
+  for (const auto& key : query::surface_keys(tile, address, layer, map)) {
+    const auto value = static_cast<std::int64_t>(decode_value(layer.type, key.bits));
+    sums.push_back({apart ? std::optional(value) : std::nullopt, key.texels, key.area.value(),
+                    key.weighted_position, key.lowest, key.highest});
   }
-  return out;
+  return sums;
 }
 
 }  // namespace strata::room

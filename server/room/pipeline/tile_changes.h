@@ -33,10 +33,9 @@ struct ChangeCount {
 };
 ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map);
 
-// Returns the sums for each key in the tiles, in the form that the journal stores.
-std::vector<store::TileKeys> sum_tiles(
-    const Layer& layer, const mesh::SurfaceMap& map,
-    const std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>& tiles);
+// Returns the sums for each key in the tile, in the form that the journal stores.
+std::vector<store::KeySum> sum_tile(const Layer& layer, const mesh::SurfaceMap& map,
+                                    TileAddress address, const TileData& tile);
 
 // The bits of a value. nullopt erases.
 using WrittenValue = std::optional<std::uint32_t>;

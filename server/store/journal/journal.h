@@ -51,10 +51,10 @@ struct JournalEntry {
     std::vector<std::uint8_t> key_tile;
   };
   std::vector<Revision> revisions;
-  // Returns the sums of the tiles in `revisions` after the edit. Called on the thread of the
-  // writer, at each attempt. If empty, the sums are not known, and the sums of the layer must be
-  // computed again (Layers::to_sum).
-  std::function<std::vector<TileKeys>()> sum_tiles;
+  // Returns the sums of a tile in `revisions` after the edit. Called on the thread of the writer,
+  // at each attempt, for tiles that no later edit of the same transaction changes. If empty, the
+  // sums are not known, and the sums of the layer must be computed again (Layers::to_sum).
+  std::function<std::vector<KeySum>(TileAddress)> sum_tile;
   // for undo, redo and reviews: sequences of edits whose `in_force` becomes false or true
   std::vector<std::int64_t> disable, enable;
   Review review = Review::none;  // review of this edit: none or pending

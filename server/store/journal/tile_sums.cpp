@@ -1,6 +1,7 @@
 #include "store/journal/tile_sums.h"
 
 #include <array>
+#include <ranges>
 #include <set>
 
 #include "store/content/layers.h"
@@ -69,14 +70,17 @@ void write_tile_sums(std::span<const JournalEntry* const> entries,
                      std::deque<PgConnection::Statement>& out) {
   TileKeysByPlace tiles;
   std::set<LayerId> unknown;
-  for (const JournalEntry* entry : entries) {
+  // Newest first, so each tile is summed only once. The edits of a stroke change the same tiles.
+  for (const JournalEntry* entry : std::views::reverse(entries)) {
     if (entry->revisions.empty()) continue;
-    if (!entry->sum_tiles) {
+    if (!entry->sum_tile) {
       unknown.insert(entry->layer_id);
       continue;
     }
-    for (TileKeys& tile : entry->sum_tiles())
-      tiles[{entry->layer_id, tile.tile}] = std::move(tile.keys);
+    for (const auto& revision : entry->revisions) {
+      const auto [place, is_newest] = tiles.try_emplace({entry->layer_id, revision.tile});
+      if (is_newest) place->second = entry->sum_tile(revision.tile);
+    }
   }
   write_tile_sums(tiles, out);
   if (unknown.empty()) return;

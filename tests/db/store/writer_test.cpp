@@ -18,6 +18,8 @@ namespace {
 using test::Painter;
 using test::save;
 using ::testing::ElementsAre;
+using ::testing::Pair;
+using ::testing::UnorderedElementsAre;
 
 using Answer = std::optional<ErrorCode>;
 constexpr Answer kSaved = std::nullopt;
@@ -133,6 +135,34 @@ TEST_F(Writer, an_edit_made_on_top_of_one_that_was_not_saved_is_refused_while_ot
   EXPECT_TRUE(test::content_of(store_->journal().load_tiles(other.layer()).value()) ==
               other.content());
   EXPECT_TRUE(writer.accepting());
+}
+
+TEST_F(Writer, a_transaction_sums_each_tile_once_after_its_newest_edit) {
+  JournalWriter writer(*store_, {});
+  HeldModel held(dsn_, model_.id);
+  std::vector<std::pair<std::uint16_t, std::uint64_t>> summed;  // tile, edit
+  const auto paint = [&](std::uint64_t sequence, std::uint16_t tile) {
+    JournalEntry entry = painter_.paint(static_cast<std::int64_t>(sequence), 1, 1);
+    entry.revisions.front().tile = {tile, 0};
+    entry.sum_tile = [&summed, sequence](TileAddress address) {
+      summed.emplace_back(address.x, sequence);
+      return std::vector<KeySum>{{.key = 1, .texels = sequence}};
+    };
+    submit(writer, std::move(entry));
+  };
+  paint(1, 0);
+  held.wait_until_someone_waits();
+  summed.clear();  // the first edit is a transaction of its own
+  paint(2, 0);
+  paint(3, 1);
+  paint(4, 0);
+  paint(5, 0);
+  held.release();
+  writer.drain();
+  EXPECT_THAT(answers_, ElementsAre(kSaved, kSaved, kSaved, kSaved, kSaved));
+  EXPECT_THAT(summed, UnorderedElementsAre(Pair(0, 5), Pair(1, 3)));
+  EXPECT_EQ(count("SELECT texels[1] FROM tile_sums WHERE tile_x = 0"), 5);
+  EXPECT_EQ(count("SELECT texels[1] FROM tile_sums WHERE tile_x = 1"), 3);
 }
 
 TEST_F(Writer, entries_that_can_never_be_written_fail_at_once) {
