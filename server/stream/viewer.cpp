@@ -46,7 +46,8 @@ struct Viewer::Impl {
         options(o),
         send(std::move(s)),
         refused(std::move(r)),
-        flow(o.window, o.sequence, stream.samples_at_rest) {
+        flow(o.window, o.sequence, stream.samples_at_rest),
+        draw_pace(o.longest_draw) {
     adapt_window();
   }
 
@@ -77,7 +78,9 @@ struct Viewer::Impl {
   mutable std::mutex mutex;
   FlowControl flow;
   LinkPace link;
-  MovingPicture moving;  // settings of the last whole frame of a moving camera
+  DrawPace draw_pace;
+  MovingPicture moving;              // settings of the last whole frame of a moving camera
+  Clock::time_point requested_at{};  // time of the last request of a draw
   render::ViewStyle style;
   render::ModelHandle model = 0;
   render::ViewHandle view = 0;
@@ -398,8 +401,12 @@ void Viewer::step() {
     request.refinement = draw.samples > 1;
     request.samples_time = kRefinementTime;
     // A rectangle keeps the settings of the existing frame.
-    if (request.moving && !draw.changed) impl_->moving = impl_->link.moving();
+    if (request.moving && !draw.changed) {
+      impl_->moving = impl_->link.moving();
+      impl_->moving.scale = std::min(impl_->moving.scale, impl_->draw_pace.scale());
+    }
     if (request.moving) reduced = impl_->moving;
+    impl_->requested_at = Clock::now();
   }
   request.camera = draw.camera;
   request.changed = draw.changed;
@@ -445,8 +452,11 @@ void Viewer::on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::
     const bool sent = !frame->rects.empty();
     impl_->retry_in = kFirstRetry;
     impl_->stats.last_render_ms = frame->render_ms;
-    if (const auto number = impl_->flow.on_drawn(draw.ticket, sent))
+    if (const auto number = impl_->flow.on_drawn(draw.ticket, sent)) {
+      if (draw.quality == FlowControl::Quality::moving && !draw.changed)
+        impl_->draw_pace.on_drawn(Clock::now() - impl_->requested_at);
       impl_->drawn.push_back({draw, *number, jpeg, std::move(frame)});
+    }
   }
   encode_next();
   step();

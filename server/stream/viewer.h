@@ -9,6 +9,7 @@
 
 #include "domain/scene/camera.h"
 #include "render/renderer.h"
+#include "stream/draw_pace.h"
 #include "stream/flow_control.h"
 #include "stream/frame_messages.h"
 #include "stream/jpeg_pool.h"
@@ -34,6 +35,8 @@ struct StreamContext {
 // - Quality never decreases during painting.
 // - Viewers with the same frame share its drawing and its encoding.
 // - Over a slow link, frames of a moving camera have lower quality and size (stream/link_pace).
+// - If the turns of other views take long, frames of a moving camera are smaller
+//   (stream/draw_pace).
 // - Users who only watch do not delay a user who moved the camera or edited recently
 //   (render/thread/frame_queue).
 // Thread-safe. Calls `send` on encoder threads, in frame order, and `refused` on the GPU thread,
@@ -45,6 +48,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     int window = 0;  // unacknowledged frames; 0: depends on the link (stream/link_pace)
     int max_width = 3840, max_height = 2160;
     std::int64_t sequence = 0;  // newest edit in the scene at the start
+    // Moving frames become smaller if they take longer (stream/draw_pace).
+    std::chrono::milliseconds longest_draw = DrawPace::kLongest;
   };
   using Send = SendFrames;
   // Reports the reason if a requested frame is invalid. Called once for each reason. The next

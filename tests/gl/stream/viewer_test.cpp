@@ -387,6 +387,29 @@ TEST_F(StreamViewer, who_sees_the_same_is_sent_one_drawing_and_one_encoding) {
   EXPECT_EQ(encoder_.encoded(), before + 1);
 }
 
+TEST_F(StreamViewer, frames_that_take_long_are_smaller_while_the_camera_moves) {
+  Client& client = new_client();
+  Viewer::Options options;
+  options.longest_draw = std::chrono::milliseconds(0);
+  auto view = viewer(client, options);
+  view->set_camera(1, camera(0), true);
+  auto last = client.wait_for([](const FrameHeader& h) { return h.camera_seq == 1; });
+  EXPECT_EQ(last.full_width, std::uint32_t(kWidth));
+  // Frames that are drawn after a long pause count as frames at rest.
+  std::uint64_t number = 1;
+  while (number < 200 && last.full_width != std::uint32_t(kWidth / 2)) {
+    ++number;
+    view->set_camera(number, camera(0.02 * double(number)), true);
+    last =
+        client.wait_for([&](const FrameHeader& h) { return h.camera_seq == number; }, last.frame);
+  }
+  EXPECT_EQ(last.full_width, std::uint32_t(kWidth / 2));
+  view->set_camera(number + 1, camera(0), false);
+  const auto still = client.wait_for([](const FrameHeader& h) { return h.still; }, last.frame);
+  EXPECT_EQ(still.full_width, std::uint32_t(kWidth));
+  EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0))), 1.5);
+}
+
 TEST_F(StreamViewer,
        over_a_slow_link_a_moving_camera_has_smaller_pictures_and_a_still_one_has_not) {
   Client& client = new_client();
