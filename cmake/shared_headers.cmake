@@ -39,3 +39,12 @@ function(strata_shared_headers target kind)
   target_compile_options(${target} PRIVATE ${options})
   target_precompile_headers(${target} REUSE_FROM ${headers})
 endfunction()
+
+# strata_computes(FILE…): optimizes files that compute texels in a target that sanitizers leave
+# unoptimized. They share no headers, because their options differ from those of the headers.
+function(strata_computes)
+  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    set_source_files_properties(${ARGN} PROPERTIES
+      COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
+endfunction()

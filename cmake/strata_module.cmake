@@ -11,7 +11,7 @@ function(strata_module name)
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/modules/${name}/${name} SYMBOLIC)
   if(name MATCHES "^(net|cli)$")
     strata_shared_headers(strata_${name} net)
-  elseif(name MATCHES "^(domain|mesh|render|query)$")
+  elseif(name MATCHES "^(domain|mesh|render|query|jobs)$")
     strata_shared_headers(strata_${name} standard COMPUTES)
   elseif(NOT name STREQUAL "figure")  # pango needs other compiler flags
     strata_shared_headers(strata_${name} standard)
