@@ -127,7 +127,7 @@ TEST_F(Merger, random_journals_give_the_same_texels_and_responses) {
       if (HasFatalFailure()) return;
     }
     merge_all(painted);
-    check_all(painted);
+    check_all(painted, 4);
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(count("edit_batches"), 50);
