@@ -252,6 +252,30 @@ setup_web_client() {
   end_step
 }
 
+# in_background COMMAND…: runs a command that asks nothing while the script continues. Its output is
+# in the file $background_output. The end of the script also ends the command.
+# await_background: returns the status of the command.
+background='' background_output=''
+end_background() {
+  [ -z "$background" ] || kill -- "-$background" 2>/dev/null
+  [ -z "$background_output" ] || rm -f "$background_output"
+}
+in_background() {
+  end_background
+  background_output=$(mktemp)
+  trap end_background EXIT
+  set -m  # a separate process group, which includes the processes that the command starts
+  "$@" </dev/null >"$background_output" 2>&1 &
+  background=$!
+  set +m
+}
+await_background() {
+  local status=0
+  wait "$background" || status=$?
+  background=''
+  return "$status"
+}
+
 # The number of compilers that run at the same time: one for each core, fewer if memory is short.
 # The compiler can need 1.2 GB of memory for one source file.
 build_jobs() {

@@ -48,6 +48,8 @@ export default defineConfig({
   test: {
     include: ["tests/**/*.test.ts"],
     setupFiles: ["tests/setup.ts"],
+    // The machine may also run other checks.
+    testTimeout: 20_000,
     environment: "node",
   },
 });
