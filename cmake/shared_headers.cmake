@@ -40,11 +40,12 @@ function(strata_shared_headers target kind)
   target_precompile_headers(${target} REUSE_FROM ${headers})
 endfunction()
 
-# strata_computes(FILE…): optimizes files that compute texels in a target that sanitizers leave
-# unoptimized. They share no headers, because their options differ from those of the headers.
+# strata_computes(FILE…): optimizes files that compute texels, also under sanitizers and in a target
+# that is not optimized then. They share no headers, because their options differ from those of the
+# headers.
 function(strata_computes)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
-    set_source_files_properties(${ARGN} PROPERTIES
-      COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON)
   endif()
 endfunction()
