@@ -165,7 +165,9 @@ test("a phone opens the stop of the screen, and sees no code", async () => {
 });
 
 test("pictures and sounds are stored, and players get parts of them", async () => {
+  await page.clock.install();
   await page.goto(server.url + path);
+  await live();
   const kept = () =>
     page.evaluate(
       async () =>
@@ -173,7 +175,12 @@ test("pictures and sounds are stored, and players get parts of them", async () =
           /\/files\/\d+\?as=kiosk$/.test(url),
         ).length,
     );
-  await wait_for(async () => (await kept()) === 3, "the files to be kept", 500);
+  // the page stores them at a heartbeat, which is every 30 s of the page's clock
+  await wait_for(
+    async () => (await kept()) === 3 || (await page.clock.fastForward(31_000).catch(() => {}), false),
+    "the files to be kept",
+    500,
+  );
   await page.evaluate(() => navigator.serviceWorker.ready);
   const statuses = await page.evaluate(async () => {
     const found = (await (await caches.open("strata-kiosk")).keys()).filter(({ url }) =>
