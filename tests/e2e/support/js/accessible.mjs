@@ -38,6 +38,14 @@ export async function findings(page, rules = null, exclude = []) {
     );
 }
 
+/** Rules about visible texts as names, landmarks, and heads of tables. */
+export const kHeadRules = [
+  "label-content-name-mismatch",
+  "region",
+  "landmark-one-main",
+  "empty-table-header",
+];
+
 /**
  * Returns all findings of these rules, of any severity, one per line. Includes rules that axe-core
  * does not apply by default.
