@@ -16,7 +16,7 @@ struct Checkpoint {
   // revisions before it. A writer in force. Empty if there are no such texels.
   std::optional<TileRevision> written;
   // The other changes: by edits that are no longer in force, and by undo, redo and reviews. Not a
-  // writer in force. Empty if there are none.
+  // writer in force. Empty without such changes.
   std::optional<TileRevision> rest;
 };
 

@@ -25,8 +25,8 @@ void inherit(FrameRequest& request, const FrameRequest& other) {
   for (const auto& box : *other.changed) add_box(*request.changed, box, kMaxBoxes);
 }
 
-// Requests for the same picture have the same hash. Besides the camera, it contains what differs
-// between people with the same saved view: the size of the window, layers and palettes.
+// Requests for the same picture have the same hash. In addition to the camera, it contains what
+// differs between people with the same saved view: the size of the window, layers and palettes.
 std::size_t hash_of(const FrameRequest& request) {
   std::size_t hash = std::hash<ModelHandle>()(request.model);
   const auto add = [&]<class Value>(const Value& value) {

@@ -95,7 +95,7 @@ void OpenRoom::ParticipantsPart::content_changed(
     std::int64_t sequence) {
   std::lock_guard lock(mutex_);
   // First the people who edit now, so that the GPU does not begin a frame for somebody else before
-  // it knows of the author's. After a workshop, everybody has edited at some time.
+  // it has the author's request. After a workshop, everybody has edited at some time.
   const auto lately = OpenParticipant::Clock::now() - kEditsFor;
   std::vector<OpenParticipant*> onlookers;
   for (OpenParticipant* each : here_)

@@ -470,7 +470,7 @@ TEST_F(Live, with_many_people_the_edits_of_a_layer_are_told_together) {
   shared->limits.presence_every = std::chrono::hours(1);
   hello();
   room->participants_.people.resize(40, room->participants_.people[0]);
-  socket->later.front()();  // sends the presence, so the session knows of 40 people
+  socket->later.front()();  // sends the presence, so the session has 40 people
   socket->delays.clear();
   std::int64_t sequence = 0;
   const auto edit = [&](std::int64_t layer, bool provisional = false) {

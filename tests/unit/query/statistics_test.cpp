@@ -96,7 +96,7 @@ std::vector<Sample> samples(const LayerView& view, const mesh::SurfaceMap& map) 
 
 TEST(QueryStatistics, keys_of_a_tile_agree_with_a_plain_sum_over_every_texel) {
   const mesh::SurfaceMap map = make_map(256, 0.6, 5);
-  // Few and many keys, the bit pattern 0, and a layer whose values are not told apart.
+  // Few and many keys, the bit pattern 0, and a layer whose values are not distinguished.
   for (const auto& [type, distinct] : {std::pair{ValueType::u8, 1},
                                        {ValueType::u8, 3},
                                        {ValueType::u8, 200},
