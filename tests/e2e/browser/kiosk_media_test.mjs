@@ -177,7 +177,8 @@ test("pictures and sounds are stored, and players get parts of them", async () =
     );
   // the page stores them at a heartbeat, which is every 30 s of the page's clock
   await wait_for(
-    async () => (await kept()) === 3 || (await page.clock.fastForward(31_000).catch(() => {}), false),
+    async () =>
+      (await kept()) === 3 || (await page.clock.fastForward(31_000).catch(() => {}), false),
     "the files to be kept",
     500,
   );
