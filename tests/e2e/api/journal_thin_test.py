@@ -39,7 +39,7 @@ def fill(server, value):
 def test_an_administrator_thins_old_states(server):
     server.sql(THINNING_MARKED_LONG_AGO)
     server.import_model(
-        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=128
+        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
     )
     server.ok("POST", M + "/layers", {"name": "Cracks", "type": "u8"})
     for value in range(1, OLD + 4):
@@ -70,7 +70,7 @@ def test_an_administrator_thins_old_states(server):
         if at in kept:
             assert found.body == state, f"the state after edit {at} changed"
     gone = texels(server, 2).json()
-    assert gone["type"].endswith("/gone") and "0 and 4" in gone["detail"], gone
+    assert gone["type"].endswith("#gone") and "0 and 4" in gone["detail"], gone
     listed = server.ok("GET", L + "/edits?limit=100").json()
     oldest = listed["edits"][-1]
     assert oldest["op"] == "checkpoint" and oldest["people"][0]["edits"] == EDITS_A_DAY, oldest

@@ -3176,6 +3176,14 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
+        Gone: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
         HeaderTooLarge: {
             headers: {
                 [name: string]: unknown;
