@@ -1,5 +1,7 @@
 #include "store/content/named_parts.h"
 
+#include <string_view>
+
 #include "store/journal/kept_states.h"
 #include "store/pg/pg_row.h"
 #include "store/store_impl.h"
@@ -97,7 +99,7 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
                   "A model can have at most " + std::to_string(kind_.most) + " " + kind_.table +
                       ". Delete some first.");
     // A later thinning of the journal sees the snapshot, because it locks the model, too.
-    if (kind_.table == kSnapshots.table)
+    if (std::string_view(kind_.table) == kSnapshots.table)
       STRATA_TRY(
           check_kept(connection, part.model_id, part.content.value("sequence", std::int64_t{0})));
     const std::string taken = sql("SELECT slug FROM TABLE WHERE slug LIKE $1 AND model_id = $2");
