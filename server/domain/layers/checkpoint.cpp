@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "domain/layers/mask_texels.h"
+#include "domain/layers/tile_difference.h"
 
 namespace strata {
 namespace {
@@ -13,17 +14,6 @@ TileData empty_like(const TileData& tile) {
   TileData empty;
   empty.values.resize(tile.values.size());
   return empty;
-}
-
-// The texels of a difference that are not zero.
-TileMask changed_texels(const TileData& difference) {
-  TileMask changed = difference.valid;
-  const int width = difference.texel_bytes();
-  for (int texel = 0; texel < kTexelsPerTile; ++texel)
-    for (int byte = 0; byte < width; ++byte)
-      if (difference.values[static_cast<std::size_t>(texel * width + byte)] != 0)
-        changed.set(texel);
-  return changed;
 }
 
 // Copies the texels of a difference. `copy_texels` is for tiles: it clears the value of an invalid
@@ -77,7 +67,7 @@ Checkpoint join_revisions(std::span<const PastRevision> revisions) {
   }
   TileRevision rest = total;
   apply(written, rest.difference);
-  rest.written = changed_texels(rest.difference);
+  rest.written = differing(rest.difference, empty_like(rest.difference));
   Checkpoint checkpoint;
   if (rest.written.any()) checkpoint.rest = std::move(rest);
   if (written.written.any()) checkpoint.written = std::move(written);
