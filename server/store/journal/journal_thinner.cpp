@@ -146,12 +146,13 @@ void replace_edits(const Group& group, Statements& out) {
   const GroupEdit& first = group.edits.front();
   std::int64_t begins = first.op == "checkpoint" ? first.first_sequence : first.sequence;
   nlohmann::json record = record_of(group.edits);
-  nlohmann::json answer{{"texels_changed", 0}, {"area_m2", 0.0}};
+  std::int64_t texels = 0;
+  double area_m2 = 0;
   for (const nlohmann::json& person : record.at("people")) {
-    answer["texels_changed"] = answer.at("texels_changed").get<std::int64_t>() +
-                               person.at("texels_changed").get<std::int64_t>();
-    answer["area_m2"] = answer.at("area_m2").get<double>() + person.at("area_m2").get<double>();
+    texels += person.at("texels_changed").get<std::int64_t>();
+    area_m2 += person.at("area_m2").get<double>();
   }
+  nlohmann::json answer{{"texels_changed", texels}, {"area_m2", area_m2}};
   for (const auto& sequence : {at.written_at, at.rest_at}) {
     if (!sequence) continue;
     answer["sequence"] = *sequence;
