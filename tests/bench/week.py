@@ -96,22 +96,22 @@ class Progress:
             self.changed.notify_all()
 
 
-class WeekHttpPainter(HttpPainter):
+class CountsStrokes:
+    """For a painter of this week."""
+
     progress = None
-    paint_stroke = HttpPainter.paint
 
     def paint(self):
-        self.paint_stroke()
+        super().paint()
         self.progress.add("strokes")
 
 
-class WeekLivePainter(LivePainter):
-    progress = None
-    paint_stroke = LivePainter.paint
+class WeekHttpPainter(CountsStrokes, HttpPainter):
+    pass
 
-    def paint(self):
-        self.paint_stroke()
-        self.progress.add("strokes")
+
+class WeekLivePainter(CountsStrokes, LivePainter):
+    pass
 
 
 class KioskScreen(threading.Thread):
