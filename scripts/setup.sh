@@ -252,7 +252,7 @@ setup_web_client() {
   end_step
 }
 
-# in_background COMMAND…: runs a command that asks nothing while the script continues. Its output is
+# in_background COMMAND…: runs a command without input while the script continues. Its output is
 # in the file $background_output. The end of the script also ends the command.
 # await_background: returns the status of the command.
 background='' background_output=''
