@@ -5,6 +5,7 @@
 #include "core/log.h"
 #include "core/no_such.h"
 #include "store/nodes/node_messages.h"
+#include "store/nodes/presence_channel.h"
 #include "store/pg/pg_row.h"
 #include "store/store_impl.h"
 
@@ -185,6 +186,10 @@ void Nodes::drop_connections() { pool_.drop_connections(); }
 
 std::unique_ptr<NodeMessages> Nodes::messages(const Uuid& self) {
   return std::make_unique<NodeMessages>(pool_.dsn(), self);
+}
+
+std::unique_ptr<PresenceChannel> Nodes::presence(const Uuid& self) {
+  return std::make_unique<PresenceChannel>(pool_.dsn(), self);
 }
 
 // After a wait for a concurrent claim, the condition is checked again, so only one of two claims

@@ -17,6 +17,7 @@ namespace strata::store {
 class NodeMessages;
 class Params;
 class Pool;
+class PresenceChannel;
 
 // A server process of a site with several nodes.
 struct NewNode {
@@ -99,6 +100,8 @@ class Nodes {
   // --- Messages between nodes (store/nodes/node_messages.h)
   // Returns a new reader of the messages to `self`.
   std::unique_ptr<NodeMessages> messages(const Uuid& self);
+  // Returns a new connection to the channel for presence (store/nodes/presence_channel.h).
+  std::unique_ptr<PresenceChannel> presence(const Uuid& self);
 
   // --- Models
   // Makes `self` the owner of a model, and returns the new epoch. The model must have no owner, or

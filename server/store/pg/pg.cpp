@@ -284,26 +284,31 @@ Result<void> PgConnection::each_row(const char* sql, const Params& params,
 }
 
 Result<bool> PgConnection::wait_for_notification(std::chrono::milliseconds limit) {
+  const auto arrived = STRATA_TRY(notifications(limit));
+  return !arrived.empty();
+}
+
+Result<std::vector<std::string>> PgConnection::notifications(std::chrono::milliseconds limit) {
   PGconn* raw = connection_.get();
-  const auto take_all = [raw] {
-    bool any = false;
+  std::vector<std::string> payloads;
+  const auto take_all = [&] {
     while (PGnotify* notification = PQnotifies(raw)) {
+      payloads.emplace_back(notification->extra);
       PQfreemem(notification);
-      any = true;
     }
-    return any;
+    return !payloads.empty();
   };
   const auto deadline = std::chrono::steady_clock::now() + limit;
   // Notifications can arrive together with the results of statements.
   while (!take_all()) {
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-    if (left.count() <= 0) return false;
+    if (left.count() <= 0) return payloads;
     pollfd socket{PQsocket(raw), POLLIN, 0};
     const int ready = poll(&socket, 1, static_cast<int>(left.count()));
     if (ready > 0 && PQconsumeInput(raw) != 1) return failed(nullptr);
   }
-  return true;
+  return payloads;
 }
 
 // Writes a message to the WAL that no program reads, because only a transaction that writes WAL

@@ -180,6 +180,8 @@ class PgConnection {
   // Waits for a notification after LISTEN, or returns false after `limit`, which may exceed the
   // limits of the connection. Forgets all notifications that have arrived.
   Result<bool> wait_for_notification(std::chrono::milliseconds limit);
+  // The same, but returns the payloads of all notifications that have arrived, in their order.
+  Result<std::vector<std::string>> notifications(std::chrono::milliseconds limit);
 
   // Makes the current transaction, or a new one, wait at its commit until the synchronous standbys
   // have all changes that this session can read. Call it before you report changes that another
