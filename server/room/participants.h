@@ -28,6 +28,8 @@ struct Pointing {
 struct Portrait {
   std::string full_name{};  // empty if the user has no full name
   std::string color{kNobodysColor};
+  // False for kiosks. Other nodes are not notified of them, because nobody sees them.
+  bool is_person = true;
 };
 
 // The data of one connection that the other participants receive. Never stored.

@@ -19,6 +19,7 @@
 #include "room/layers.h"
 #include "room/open/following.h"
 #include "room/open/open_room.h"
+#include "room/presence_exchange.h"
 #include "room/role_filtered_room.h"
 #include "store/content/models.h"
 #include "store/nodes/nodes.h"
@@ -105,6 +106,9 @@ struct Rooms::Impl {
           store, JournalTail::Handlers{[this] { return all_in(followers); },
                                        [this](const auto& room) { drop_deleted_follower(room); },
                                        [this](const auto& room) { drop_ended_follower(room); }});
+    if (options.node)
+      presence =
+          std::make_unique<PresenceExchange>(store, *options.node, [this] { return all_open(); });
     sweeper = std::thread([this] { sweep(); });
   }
 
@@ -115,6 +119,7 @@ struct Rooms::Impl {
       changed.notify_all();
     }
     sweeper.join();
+    presence.reset();
     tail.reset();
     renderer.on_context_lost({});
     for (const auto& room : all_open()) room->close(kStopping);
@@ -349,7 +354,8 @@ struct Rooms::Impl {
   bool suspended = false;
   bool stopping = false;
   bool draining = false;
-  std::unique_ptr<JournalTail> tail;  // null: this server follows no other node
+  std::unique_ptr<JournalTail> tail;           // null: this server follows no other node
+  std::unique_ptr<PresenceExchange> presence;  // null: the site has one server
   std::thread sweeper;
 };
 
@@ -525,6 +531,7 @@ void Rooms::resume() {
   }
   impl_->services.store.nodes().drop_connections();
   if (impl_->tail) impl_->tail->reconnect();
+  if (impl_->presence) impl_->presence->reconnect();
   for (const auto& room : impl_->all_open()) room->continue_saving();
 }
 

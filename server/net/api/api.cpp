@@ -461,9 +461,10 @@ Result<Api::LiveEntry> Api::admit_live(Request& request) {
     auto parsed = STRATA_TRY(protocol::from_json<protocol::PersonalView>(*stored));
     view = std::move(parsed);
   }
-  return LiveEntry{std::move(*room),   project.slug,
-                   *request.principal, person ? portrait_of(*person) : room::Portrait(),
-                   std::move(view),    Authenticator::secret_of(request),
+  room::Portrait portrait = person ? portrait_of(*person) : room::Portrait();
+  portrait.is_person = !request.principal->kiosk;
+  return LiveEntry{std::move(*room),    project.slug,    *request.principal,
+                   std::move(portrait), std::move(view), Authenticator::secret_of(request),
                    is_follower};
 }
 

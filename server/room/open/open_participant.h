@@ -38,6 +38,7 @@ class OpenParticipant final : public Participant {
 
   Listener* listener() const { return listener_; }
   const std::string& user() const { return who_.user; }
+  bool is_person() const { return portrait_.is_person; }
   Role role() const { return who_.role; }  // determines the visible layers and columns
   using Clock = std::chrono::steady_clock;
   bool has_edited_since(Clock::time_point time) const { return last_edit_.load() >= time; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <chrono>
+#include <set>
 #include <utility>
 
 #include "room/open/open_participant.h"
@@ -140,9 +141,7 @@ Result<void> OpenRoom::ParticipantsPart::follow(const Uuid& follower,
     if (!leader) {
       other = followers_.stop(follower);
     } else {
-      const bool here = std::any_of(here_.begin(), here_.end(),
-                                    [&](const auto* each) { return each->session() == *leader; });
-      if (!here)
+      if (!is_here(*leader) && !elsewhere_.has(*leader))
         return fail(ErrorCode::not_found, "Session not found",
                     "The session that you want to follow does not exist or has left this model. "
                     "See the list of sessions in `presence`.",
@@ -171,12 +170,83 @@ std::vector<Presence> OpenRoom::ParticipantsPart::presence(const Uuid& receiver)
   std::lock_guard lock(mutex_);
   const auto leader = followers_.leader_of(receiver);
   std::vector<Presence> people;
+  const auto add = [&](Presence person) {
+    person.following = followers_.leader_of(person.session);
+    if (leader != person.session) person.camera.reset();
+    people.push_back(std::move(person));
+  };
+  for (const OpenParticipant* each : here_) add(each->presence());
+  elsewhere_.each(add);
+  return people;
+}
+
+bool OpenRoom::ParticipantsPart::has_people_elsewhere() const {
+  std::lock_guard lock(mutex_);
+  return !elsewhere_.empty();
+}
+
+std::vector<Presence> OpenRoom::ParticipantsPart::people_here() const {
+  std::lock_guard lock(mutex_);
+  std::set<Uuid> followed;  // by people at other nodes
+  elsewhere_.each([&](const Presence& person) {
+    if (const auto leader = followers_.leader_of(person.session)) followed.insert(*leader);
+  });
+  std::vector<Presence> people;
   for (const OpenParticipant* each : here_) {
-    people.push_back(each->presence());
-    people.back().following = followers_.leader_of(each->session());
-    if (leader != each->session()) people.back().camera.reset();
+    if (!each->is_person()) continue;
+    Presence& person = people.emplace_back(each->presence());
+    person.following = followers_.leader_of(person.session);
+    if (!followed.contains(person.session)) person.camera.reset();
   }
   return people;
+}
+
+void OpenRoom::ParticipantsPart::take_people(const Uuid& node, std::vector<Presence> people,
+                                             PeopleElsewhere::Clock::time_point now) {
+  std::lock_guard lock(mutex_);
+  std::erase_if(people, [this](const Presence& person) { return is_here(person.session); });
+  auto change = elsewhere_.replace(node, people, now);
+  for (const Uuid& session : change.left) followers_.leave(session);
+  // First end what has ended, so that it makes no cycle with what has begun.
+  for (const Presence& person : people)
+    if (followers_.leader_of(person.session) != person.following)
+      change.any = followers_.stop(person.session) || change.any;
+  for (const Presence& person : people) change.any = follow_elsewhere(person) || change.any;
+  announce(change);
+}
+
+void OpenRoom::ParticipantsPart::forget_silent_nodes(PeopleElsewhere::Clock::time_point now) {
+  std::lock_guard lock(mutex_);
+  const auto change = elsewhere_.forget_silent(now);
+  for (const Uuid& session : change.left) followers_.leave(session);
+  announce(change);
+}
+
+void OpenRoom::ParticipantsPart::announce(const PeopleElsewhere::Change& change) {
+  if (change.any) return announce_presence();
+  for (const Uuid& session : change.cameras) camera_moved(session);
+}
+
+bool OpenRoom::ParticipantsPart::follow_elsewhere(const Presence& person) {
+  const auto& leader = person.following;
+  // A leader at a third node may be in a list that has not arrived yet. Lists are sent repeatedly.
+  if (!leader || !elsewhere_.has(person.session) || !(is_here(*leader) || elsewhere_.has(*leader)))
+    return false;
+  if (const auto followed = followers_.follow(person.session, *leader)) return *followed;
+  // People at several nodes began to follow each other at the same time. Each node removes its own
+  // people from the cycle.
+  bool changed = false;
+  for (auto ahead = leader; ahead && *ahead != person.session;) {
+    const auto next = followers_.leader_of(*ahead);
+    if (is_here(*ahead)) changed = followers_.stop(*ahead) || changed;
+    ahead = next;
+  }
+  return changed;
+}
+
+bool OpenRoom::ParticipantsPart::is_here(const Uuid& session) const {
+  return std::any_of(here_.begin(), here_.end(),
+                     [&](const auto* each) { return each->session() == session; });
 }
 
 std::size_t OpenRoom::ParticipantsPart::count() const {

@@ -11,6 +11,7 @@
 #include "room/listener.h"
 #include "room/open/followers.h"
 #include "room/open/open_room.h"
+#include "room/open/people_elsewhere.h"
 #include "room/participants.h"
 
 namespace strata::room {
@@ -31,8 +32,9 @@ class OpenRoom::ParticipantsPart final : public Participants {
   // Notifies a participant who joined after the others had been notified that the model moved, or
   // that the node has no database.
   void tell_state(const Uuid& session);
-  // Replaces the former leader. nullopt: the follower has no leader. Returns the error `not_found`
-  // if no participant has that session, and the same errors as Followers.
+  // Replaces the former leader, who can also be at another node. nullopt: the follower has no
+  // leader. Returns the error `not_found` if nobody has that session, and the same errors as
+  // Followers.
   Result<void> follow(const Uuid& follower, const std::optional<Uuid>& leader);
   void camera_moved(const Uuid& session);  // notifies the followers of the session
 
@@ -49,16 +51,33 @@ class OpenRoom::ParticipantsPart final : public Participants {
                        std::int64_t sequence);
   void styles_changed();
   void model_changed(render::ModelHandle model);
-  std::size_t count() const;       // number of connections
+  // --- for the other nodes (room/presence_exchange.h)
+  bool has_people_elsewhere() const;
+  // Returns the people at this node, without kiosks. They have cameras only if somebody at another
+  // node follows them.
+  std::vector<Presence> people_here() const;
+  // Replaces the people at another node, and notifies listeners of what has changed.
+  void take_people(const Uuid& node, std::vector<Presence> people,
+                   PeopleElsewhere::Clock::time_point now);
+  void forget_silent_nodes(PeopleElsewhere::Clock::time_point now);
+
+  std::size_t count() const;       // number of connections to this node
   std::size_t take_leave_count();  // number of connections that left since the last call
 
  private:
+  // Call these functions while holding `mutex_`.
+  bool is_here(const Uuid& session) const;
+  // Records whom a person at another node follows. Returns whether anything has changed.
+  bool follow_elsewhere(const Presence& person);
+  void announce(const PeopleElsewhere::Change& change);
+
   OpenRoom& room_;
   // Recursive, because a listener may read the presence during a notification.
   mutable std::recursive_mutex mutex_;
   std::vector<OpenParticipant*> here_;
   std::size_t left_ = 0;
-  Followers followers_;
+  PeopleElsewhere elsewhere_;
+  Followers followers_;  // of all people, also of those at other nodes
 };
 
 }  // namespace strata::room

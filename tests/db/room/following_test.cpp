@@ -7,9 +7,11 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <future>
 #include <mutex>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "room/edit.h"
@@ -18,6 +20,7 @@
 #include "room/listener.h"
 #include "room/participants.h"
 #include "room/pictures.h"
+#include "room/presence_message.h"
 #include "room/queries.h"
 #include "room/rooms.h"
 #include "room/surface_images.h"
@@ -205,6 +208,40 @@ class Following : public RoomTest {
         "UPDATE tile_revisions SET difference = 'damaged', key_tile = NULL WHERE layer_id = " + id +
         "; UPDATE all_layers SET binned = NULL, binned_by = NULL, binned_bytes = NULL WHERE id = " +
         id);
+  }
+  // Waits until the condition is met. `retry` is called before each check.
+  template <class Condition>
+  static bool becomes(
+      const Condition& condition, const std::function<void()>& retry = [] {}) {
+    const auto deadline = std::chrono::steady_clock::now() + kLong;
+    for (;;) {
+      retry();
+      if (condition()) return true;
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+  static std::unique_ptr<room::Participant> join(room::Room& room, const std::string& user,
+                                                 Role role, room::Portrait portrait = {}) {
+    return room.participants().join({user, role}, std::move(portrait), nullptr,
+                                    [](const stream::FrameMessages&) {});
+  }
+  // Returns the names of the people whom this participant sees, in alphabetical order.
+  static std::string names(room::Room& room, const room::Participant& receiver) {
+    std::set<std::string> users;
+    for (const auto& person : room.participants().presence(receiver.session()))
+      users.insert(person.user);
+    std::string all;
+    for (const std::string& user : users) all += user + " ";
+    return all;
+  }
+  // Returns a person as this participant sees the person. Without a name: the participant does not
+  // see the person.
+  static room::Presence seen(room::Room& room, const room::Participant& receiver,
+                             const std::string& user) {
+    for (auto& person : room.participants().presence(receiver.session()))
+      if (person.user == user) return person;
+    return {};
   }
   std::optional<Uuid> owner() {
     const auto node = store_->nodes().owner_of("pot");
@@ -578,6 +615,161 @@ TEST_F(Following, participants_connect_again_when_this_node_becomes_the_owner) {
   const auto again = other_rooms_->follow("pot", Role::owner);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->get(), open->get()) << "viewers join the room of the owner";
+}
+
+TEST_F(Following, people_at_both_nodes_see_each_other) {
+  follow();
+  const auto owner_room = room();
+  auto anna = join(*owner_room, "anna", Role::annotator, {"Anna Ost", "#112233"});
+  const auto& vera = *participant_;
+  ASSERT_TRUE(becomes([&] { return names(*follower_, vera) == "anna vera "; }));
+  ASSERT_TRUE(becomes([&] { return names(*owner_room, *anna) == "anna vera "; }));
+  const auto first = seen(*follower_, vera, "anna");
+  EXPECT_EQ(first.session, anna->session());
+  EXPECT_EQ(first.full_name, "Anna Ost");
+  EXPECT_EQ(first.color, "#112233");
+  EXPECT_FALSE(first.pointer);
+  EXPECT_FALSE(first.leading);
+  EXPECT_EQ(seen(*owner_room, *anna, "vera").session, vera.session());
+
+  anna->pointer(room::Pointing{{1, 2, 3}, 0.5});
+  ASSERT_TRUE(anna->look_together(true, std::nullopt));
+  EXPECT_TRUE(becomes([&] {
+    const auto now = seen(*follower_, vera, "anna");
+    return now.pointer && now.pointer->position == glm::dvec3(1, 2, 3) &&
+           now.pointer->radius == 0.5 && now.leading;
+  }));
+  participant_->pointer(room::Pointing{{4, 5, 6}, {}});
+  EXPECT_TRUE(becomes([&] {
+    const auto now = seen(*owner_room, *anna, "vera");
+    return now.pointer && now.pointer->position == glm::dvec3(4, 5, 6);
+  }));
+
+  anna.reset();
+  EXPECT_TRUE(becomes([&] { return names(*follower_, vera) == "vera "; }));
+}
+
+TEST_F(Following, people_follow_the_view_of_people_at_other_nodes) {
+  follow();
+  const auto owner_room = room();
+  auto anna = join(*owner_room, "anna", Role::annotator);
+  auto ben = join(*owner_room, "ben", Role::viewer);
+  const auto& vera = *participant_;
+  ASSERT_TRUE(becomes([&] { return names(*follower_, vera) == "anna ben vera "; }));
+  ASSERT_TRUE(becomes([&] { return names(*owner_room, *anna) == "anna ben vera "; }));
+  const Camera first = camera(), second = camera({0.3, -1, 0.4});
+  anna->camera(0, 1, first, false);
+  EXPECT_FALSE(seen(*follower_, vera, "anna").camera) << "nobody follows yet";
+  ASSERT_TRUE(participant_->look_together(false, anna->session()));
+  EXPECT_TRUE(becomes([&] { return seen(*follower_, vera, "anna").camera == first; }));
+  EXPECT_EQ(seen(*owner_room, *anna, "vera").following, anna->session());
+  anna->camera(0, 2, second, false);
+  EXPECT_TRUE(becomes([&] { return seen(*follower_, vera, "anna").camera == second; }));
+  auto wim = join(*follower_, "wim", Role::viewer);
+  EXPECT_FALSE(seen(*follower_, *wim, "anna").camera) << "only followers get a camera";
+
+  const auto cycle = anna->look_together(false, vera.session());
+  ASSERT_FALSE(cycle);
+  EXPECT_EQ(cycle.error().code, ErrorCode::conflict);
+  ASSERT_TRUE(ben->look_together(false, vera.session())) << "through another person";
+  EXPECT_EQ(ben->look_together(false, random_uuid()).error().code, ErrorCode::not_found);
+
+  const Uuid left = anna->session();
+  anna.reset();
+  EXPECT_TRUE(becomes([&] { return names(*follower_, vera) == "ben vera wim "; }));
+  EXPECT_FALSE(seen(*follower_, vera, "vera").following);
+  EXPECT_EQ(participant_->look_together(false, left).error().code, ErrorCode::not_found);
+}
+
+TEST_F(Following, people_of_several_nodes_who_follow_each_other_in_a_cycle_stop) {
+  follow();
+  const auto owner_room = room();
+  auto anna = join(*owner_room, "anna", Role::annotator);
+  // Carl is at a third node, which sends its list repeatedly, as every node does.
+  room::Presence carl;
+  carl.session = random_uuid();
+  carl.user = "carl";
+  carl.color = "#112233";
+  const Uuid third = random_uuid();
+  const auto send_carl = [&] {
+    const auto texts = room::presence_texts(third, model_.id, {&carl, 1});
+    script("SELECT pg_notify('strata_presence', '" + texts.front() + "')");
+  };
+  ASSERT_TRUE(becomes([&] { return names(*owner_room, *anna) == "anna carl vera "; }, send_carl));
+  ASSERT_TRUE(
+      becomes([&] { return anna->look_together(false, carl.session).has_value(); }, send_carl));
+  carl.following = anna->session();
+  EXPECT_TRUE(becomes([&] { return !seen(*owner_room, *anna, "anna").following; }, send_carl));
+  EXPECT_TRUE(becomes([&] { return seen(*owner_room, *anna, "carl").following == anna->session(); },
+                      send_carl))
+      << "a later list begins no cycle";
+}
+
+TEST_F(Following, other_nodes_are_not_notified_of_kiosks) {
+  follow();
+  room::Portrait screen;
+  screen.is_person = false;
+  const auto kiosk = join(*follower_, "kiosk 3", Role::viewer, screen);
+  const auto wim = join(*follower_, "wim", Role::viewer);
+  const auto owner_room = room();
+  const auto anna = join(*owner_room, "anna", Role::annotator);
+  EXPECT_TRUE(becomes([&] { return names(*owner_room, *anna) == "anna vera wim "; }));
+  EXPECT_TRUE(becomes([&] { return names(*follower_, *wim) == "anna kiosk 3 vera wim "; }));
+}
+
+TEST_F(Following, an_owner_sends_nothing_while_no_other_node_shows_the_model) {
+  auto listener = store::PgConnection::connect(dsn_);
+  ASSERT_TRUE(listener && listener->script("LISTEN strata_presence"));
+  const auto owner_room = room();
+  const auto anna = join(*owner_room, "anna", Role::annotator);
+  anna->pointer(room::Pointing{{1, 2, 3}, {}});
+  // Longer than the time between two lists.
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  follow();
+  std::vector<Uuid> nodes;
+  EXPECT_TRUE(becomes([&] {
+    const auto texts = listener->notifications(std::chrono::milliseconds(100));
+    EXPECT_TRUE(texts);
+    for (const auto& text : *texts) nodes.push_back(room::parse_presence(text).value().node);
+    return std::ranges::find(nodes, a_.id) != nodes.end();
+  }));
+  EXPECT_EQ(nodes.front(), b_.id);
+}
+
+TEST_F(Following, people_of_a_node_without_a_lease_disappear) {
+  follow();
+  const auto owner_room = room();
+  const auto anna = join(*owner_room, "anna", Role::annotator);
+  ASSERT_TRUE(becomes([&] { return names(*follower_, *participant_) == "anna vera "; }));
+  script("UPDATE nodes SET lease_until = clock_timestamp() - interval '1 second' WHERE id = '" +
+         to_string(a_.id) + "'");
+  EXPECT_TRUE(becomes([&] { return names(*follower_, *participant_) == "vera "; }));
+}
+
+TEST_F(Following, people_in_a_room_that_is_closed_disappear) {
+  follow();
+  const auto wim = join(*follower_, "wim", Role::viewer);
+  const auto owner_room = room();
+  const auto anna = join(*owner_room, "anna", Role::annotator);
+  ASSERT_TRUE(becomes([&] { return names(*owner_room, *anna) == "anna vera wim "; }));
+  other_rooms_->drain();
+  EXPECT_TRUE(becomes([&] { return names(*owner_room, *anna) == "anna "; }));
+}
+
+TEST_F(Following, malformed_presence_messages_are_refused) {
+  ::testing::internal::CaptureStderr();
+  follow();
+  const auto owner_room = room();
+  const auto anna = join(*owner_room, "anna", Role::annotator);
+  // The second part of a list without the first one.
+  const std::string part = R"({"node":")" + to_string(random_uuid()) + R"(","model":)" +
+                           to_string(model_.id) + R"(,"part":1,"parts":2,"users":[]})";
+  for (const std::string& text : {std::string("no JSON"), std::string(), part})
+    script("SELECT pg_notify('strata_presence', '" + text + "')");
+  EXPECT_TRUE(becomes([&] { return names(*owner_room, *anna) == "anna vera "; }));
+  EXPECT_TRUE(becomes([&] { return names(*follower_, *participant_) == "anna vera "; }));
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              ::testing::HasSubstr("a presence message was refused"));
 }
 
 TEST_F(Following, a_deleted_model_is_no_longer_shown) {

@@ -1,5 +1,6 @@
 """Viewers and kiosks at a node that does not own a model: the node follows the journal and draws for
-them, and never becomes the owner. People who can paint are sent to the owner."""
+them, and never becomes the owner. People who can paint are sent to the owner. People at both nodes
+see each other."""
 import time
 import uuid
 
@@ -92,6 +93,16 @@ def value_at(live, model):
     return value["value"] if value["valid"] else None
 
 
+def person_when(live, name, is_expected):
+    """Returns the person with this name when the person is as expected. `is_expected` gets None
+    while the person is not present."""
+    while True:
+        users = live.receive_until("presence")["users"]
+        person = next((user for user in users if user["name"] == name), None)
+        if is_expected(person):
+            return person
+
+
 def next_event(live, event):
     message = live.receive_until("layer")
     assert message["event"] == event, message
@@ -133,6 +144,39 @@ def test_a_viewer_sees_what_is_painted_at_the_owner(model, nodes, vera, stays):
         live.send({"op": "undo", "id": str(uuid.uuid4()), "layer": "marks"})
         assert live.receive_until("problem")["status"] == 403
         assert 0 < other.metric("strata_follower_lag_seconds") < LONG_S
+
+
+def test_people_at_both_nodes_see_each_other(model, nodes, vera, stays):
+    owner, other = nodes
+    with LiveClient(other, model["id"], token=vera) as viewer:
+        viewing = viewer.hello()["session"]
+        watch(viewer, model)
+        with LiveClient(owner, model["id"]) as painter:
+            painting = painter.hello()["session"]
+            assert person_when(painter, "vera", bool)["session"] == viewing
+            assert person_when(viewer, "owner", bool)["session"] == painting
+            watch(painter, model)
+
+            painter.send({"op": "presence", "pointer": [335, 220], "radius": 2, "leading": True})
+            seen = person_when(viewer, "owner", lambda person: person and "pointer" in person)
+            assert seen["pointer"]["radius"] == 2 and seen["leading"], seen
+            assert "camera" not in seen, "only followers receive a camera"
+            viewer.send({"op": "presence", "pointer": [335, 220], "follow": painting})
+            seen = person_when(painter, "vera", lambda person: person and "pointer" in person)
+            assert seen["following"] == painting, seen
+
+            turned = camera_from(model, (0.3, -0.2, 1))
+            painter.send({"op": "camera", "seq": 2, "moving": False, **turned})
+            person_when(
+                viewer,
+                "owner",
+                lambda person: person and person.get("camera", {}).get("view") == turned["view"],
+            )
+            painter.send({"op": "presence", "follow": viewing})
+            assert painter.receive_until("problem")["status"] == 409
+        person_when(viewer, "owner", lambda person: person is None)
+        viewer.send({"op": "presence", "follow": painting})
+        assert viewer.receive_until("problem")["status"] == 404
 
 
 def test_people_who_can_paint_are_sent_to_the_owner(model, nodes, stays):
