@@ -1769,6 +1769,13 @@ CREATE TABLE public.personal_views (
     CONSTRAINT personal_views_content_check CHECK ((octet_length((content)::text) <= 1048576))
 );
 
+CREATE TABLE public.presence_channel (
+    one boolean DEFAULT true NOT NULL,
+    name text NOT NULL,
+    CONSTRAINT presence_channel_name_check CHECK ((name ~ '^strata_presence_[0-9a-f]{32}$'::text)),
+    CONSTRAINT presence_channel_one_check CHECK (one)
+);
+
 CREATE TABLE public.project_groups (
     project_id bigint NOT NULL,
     group_id bigint NOT NULL,
@@ -2146,6 +2153,9 @@ ALTER TABLE ONLY public.pending_sign_ins
 
 ALTER TABLE ONLY public.personal_views
     ADD CONSTRAINT personal_views_pkey PRIMARY KEY (user_id, model_id);
+
+ALTER TABLE ONLY public.presence_channel
+    ADD CONSTRAINT presence_channel_pkey PRIMARY KEY (one);
 
 ALTER TABLE ONLY public.project_groups
     ADD CONSTRAINT project_groups_pkey PRIMARY KEY (group_id, project_id);

@@ -19,12 +19,16 @@ PresenceChannel::PresenceChannel(std::string dsn, const Uuid& self)
     : dsn_(std::move(dsn)), self_(self) {}
 PresenceChannel::~PresenceChannel() = default;
 
-// A commit of notifications changes no data, so it need not wait for the disk or for a standby.
+// A commit of notifications changes no data, so it need not wait for the disk or for a standby. The
+// database checks that the name of the channel needs no quotes.
 Result<PgConnection*> PresenceChannel::connected() {
   if (!connection_ || !connection_->alive()) {
     connection_.reset();
     auto fresh = STRATA_TRY(PgConnection::connect(dsn_, kPresenceLimits));
-    STRATA_TRY(fresh.script("SET synchronous_commit = off; LISTEN strata_presence"));
+    const auto channel = STRATA_TRY(fresh.query("SELECT name FROM presence_channel"));
+    if (channel.rows() == 0)
+      return fail(ErrorCode::internal, "No channel", "The table presence_channel is empty.");
+    STRATA_TRY(fresh.script("SET synchronous_commit = off; LISTEN " + channel.text(0, 0)));
     connection_ = std::make_unique<PgConnection>(std::move(fresh));
   }
   return connection_.get();
@@ -42,12 +46,16 @@ Result<bool> PresenceChannel::send(std::span<const std::string> texts) {
   PgArray all(oid::kText);
   for (const std::string_view text : texts) all.add(text);
   PgConnection& connection = *STRATA_TRY(connected());
-  auto sent = STRATA_TRY(connection.query(
-      "SELECT pg_notify('strata_presence', text) IS NULL FROM unnest($1::text[]) AS text "
+  const auto sent = STRATA_TRY(connection.query(
+      "SELECT pg_notify(c.name, t.text) IS NULL FROM presence_channel c, unnest($1::text[]) AS t (text) "
       "WHERE pg_notification_queue_usage() < 0.1 "
       "AND EXISTS (SELECT FROM nodes WHERE id = $2 AND lease_until > clock_timestamp())",
       Params().array(all).uuid(self_)));
-  return sent.rows() > 0;
+  if (sent.rows() > 0) return true;
+  const auto queue = STRATA_TRY(connection.query("SELECT pg_notification_queue_usage() < 0.1"));
+  if (queue.boolean(0, 0)) return false;
+  return fail(ErrorCode::busy, "Database busy",
+              "A session of PostgreSQL does not read its notifications, so many are waiting.");
 }
 
 void PresenceChannel::disconnect() { connection_.reset(); }
