@@ -64,7 +64,12 @@ Result<void> PresenceExchange::exchange() {
   const auto texts = STRATA_TRY(channel_->receive(kStopWithin));
   for (const std::string& text : texts) receive(text);
   // If this node has no lease, the lists are not sent. They are repeated later in any case.
-  STRATA_TRY(channel_->send(due(Clock::now())));
+  const auto sent = channel_->send(due(Clock::now()));
+  if (sent) return {};
+  if (sent.error().code != ErrorCode::busy) return tl::unexpected(sent.error());
+  // Receives in any case. The next lists are sent when the database is less busy.
+  warn_rarely(unsent_,
+              "the people at this node could not be sent to other nodes: " + sent.error().detail);
   return {};
 }
 
@@ -102,10 +107,14 @@ std::optional<std::vector<Presence>> PresenceExchange::joined(PresenceMessage pa
 }
 
 void PresenceExchange::refuse(const std::string& why) {
+  warn_rarely(refused_, "a presence message was refused: " + why);
+}
+
+void PresenceExchange::warn_rarely(LastLogged& last, const std::string& line) {
   const auto now = Clock::now();
-  if (refused_ && now - *refused_ < kLogEvery) return;
-  refused_ = now;
-  log::warning("a presence message was refused: " + why);
+  if (last && now - *last < kLogEvery) return;
+  last = now;
+  log::warning(line);
 }
 
 std::vector<std::string> PresenceExchange::due(Clock::time_point now) {

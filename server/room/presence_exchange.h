@@ -53,6 +53,8 @@ class PresenceExchange {
   // Adds a part to the list that is being received. Returns the people if the list is complete.
   std::optional<std::vector<Presence>> joined(PresenceMessage part);
   void refuse(const std::string& why);
+  using LastLogged = std::optional<Clock::time_point>;
+  static void warn_rarely(LastLogged& last, const std::string& line);
   // Returns the texts to send now, and records them in `sent_`.
   std::vector<std::string> due(Clock::time_point now);
   bool pause(std::chrono::milliseconds time);  // returns false if the exchange stops
@@ -68,7 +70,7 @@ class PresenceExchange {
   std::map<ModelId, Sent> sent_;          // the last lists
   std::optional<PresenceMessage> begun_;  // the list that is being received
   bool fails_ = false;
-  std::optional<Clock::time_point> refused_;  // when a refused text was last logged
+  LastLogged refused_, unsent_;
   std::atomic<bool> reconnects_{false};
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -1,7 +1,10 @@
 #include "room/presence_message.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -46,6 +49,23 @@ Presence to_presence(protocol::PresenceUser user) {
   person.following = user.following;
   person.camera = std::move(user.camera);
   return person;
+}
+
+void keep_only(json& value, std::initializer_list<std::string_view> known) {
+  if (!value.is_object()) return;
+  for (auto member = value.begin(); member != value.end();)
+    member = std::ranges::find(known, member.key()) == known.end() ? value.erase(member)
+                                                                   : std::next(member);
+}
+
+// Removes the members that `to_presence` does not read, because a newer version may send more.
+void remove_unknown(json& person) {
+  keep_only(person,
+            {"session", "name", "full_name", "color", "pointer", "leading", "following", "camera"});
+  if (const auto pointer = person.find("pointer"); pointer != person.end())
+    keep_only(*pointer, {"position", "radius"});
+  if (const auto camera = person.find("camera"); camera != person.end())
+    keep_only(*camera, {"view", "projection", "width", "height"});
 }
 
 // The JSON of one part. `users` is the content of the list.
@@ -105,7 +125,7 @@ std::vector<std::string> presence_texts(const Uuid& node, ModelId model,
 }
 
 Result<PresenceMessage> parse_presence(std::string_view text) {
-  const auto content = STRATA_TRY(protocol::parse_json(text, {kMaxBytes, kMaxDepth}));
+  auto content = STRATA_TRY(protocol::parse_json(text, {kMaxBytes, kMaxDepth}));
   if (!content.is_object()) return malformed("node");
   const auto node = node_of(content);
   if (!node) return malformed("node");
@@ -119,7 +139,8 @@ Result<PresenceMessage> parse_presence(std::string_view text) {
   if (users == content.end() || !users->is_array()) return malformed("users");
   PresenceMessage message{
       *node, ModelId(*model), static_cast<int>(*part), static_cast<int>(*parts), {}};
-  for (const json& each : *users) {
+  for (json& each : *users) {
+    remove_unknown(each);
     auto user = STRATA_TRY(protocol::from_json<protocol::PresenceUser>(each, "users"));
     message.people.push_back(to_presence(std::move(user)));
   }

@@ -31,8 +31,8 @@ std::vector<std::string> presence_texts(const Uuid& node, ModelId model,
                                         std::span<const Presence> people);
 
 // Returns an error for any other text. Checks people in the same way as the messages of the live
-// connection (protocol/messages). Ignores further members beside the people, because a newer
-// version may send them.
+// connection (protocol/messages). Ignores further members of the message and of the people, because
+// a newer version may send them.
 Result<PresenceMessage> parse_presence(std::string_view text);
 
 }  // namespace strata::room

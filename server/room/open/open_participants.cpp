@@ -205,13 +205,15 @@ void OpenRoom::ParticipantsPart::take_people(const Uuid& node, std::vector<Prese
                                              PeopleElsewhere::Clock::time_point now) {
   std::lock_guard lock(mutex_);
   std::erase_if(people, [this](const Presence& person) { return is_here(person.session); });
-  auto change = elsewhere_.replace(node, people, now);
+  auto change = elsewhere_.replace(node, std::move(people), now);
   for (const Uuid& session : change.left) followers_.leave(session);
   // First end what has ended, so that it makes no cycle with what has begun.
-  for (const Presence& person : people)
+  elsewhere_.each_at(node, [&](const Presence& person) {
     if (followers_.leader_of(person.session) != person.following)
       change.any = followers_.stop(person.session) || change.any;
-  for (const Presence& person : people) change.any = follow_elsewhere(person) || change.any;
+  });
+  elsewhere_.each_at(
+      node, [&](const Presence& person) { change.any = follow_elsewhere(person) || change.any; });
   announce(change);
 }
 
@@ -230,17 +232,18 @@ void OpenRoom::ParticipantsPart::announce(const PeopleElsewhere::Change& change)
 bool OpenRoom::ParticipantsPart::follow_elsewhere(const Presence& person) {
   const auto& leader = person.following;
   // A leader at a third node may be in a list that has not arrived yet. Lists are sent repeatedly.
-  if (!leader || !elsewhere_.has(person.session) || !(is_here(*leader) || elsewhere_.has(*leader)))
-    return false;
+  if (!leader || !(is_here(*leader) || elsewhere_.has(*leader))) return false;
   if (const auto followed = followers_.follow(person.session, *leader)) return *followed;
   // People at several nodes began to follow each other at the same time. Each node removes its own
-  // people from the cycle.
+  // people from the cycle, and then refuses their requests to follow again, until it receives that
+  // the cycle has ended at the other node.
   bool changed = false;
   for (auto ahead = leader; ahead && *ahead != person.session;) {
     const auto next = followers_.leader_of(*ahead);
     if (is_here(*ahead)) changed = followers_.stop(*ahead) || changed;
     ahead = next;
   }
+  if (changed) (void)followers_.follow(person.session, *leader);
   return changed;
 }
 

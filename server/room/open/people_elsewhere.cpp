@@ -24,8 +24,14 @@ PeopleElsewhere::Change PeopleElsewhere::replace(const Uuid& node, std::vector<P
   const auto before = std::exchange(nodes_[node].people, {});
   Node& current = nodes_[node];
   current.received = now;
-  for (Presence& person : people)
-    if (!has(person.session)) current.people.emplace(person.session, std::move(person));
+  std::size_t count = 0;
+  for (const auto& [id, other] : nodes_) count += other.people.size();
+  for (Presence& person : people) {
+    if (count == kMaxPeople) break;
+    if (has(person.session)) continue;
+    current.people.emplace(person.session, std::move(person));
+    ++count;
+  }
   for (const auto& [session, person] : before)
     if (!current.people.contains(session)) change.left.push_back(session);
   change.any = !change.left.empty() || current.people.size() != before.size();
@@ -54,6 +60,13 @@ PeopleElsewhere::Change PeopleElsewhere::forget_silent(Clock::time_point now) {
 void PeopleElsewhere::each(const std::function<void(const Presence&)>& see) const {
   for (const auto& [id, node] : nodes_)
     for (const auto& [session, person] : node.people) see(person);
+}
+
+void PeopleElsewhere::each_at(const Uuid& node,
+                              const std::function<void(const Presence&)>& see) const {
+  const auto found = nodes_.find(node);
+  if (found == nodes_.end()) return;
+  for (const auto& [session, person] : found->second.people) see(person);
 }
 
 PeopleElsewhere::Nodes::const_iterator PeopleElsewhere::find(const Uuid& session) const {

@@ -20,6 +20,8 @@ class PeopleElsewhere {
   // time.
   static constexpr std::chrono::seconds kSilentAfter{5};
   static constexpr std::size_t kMaxNodes = 32;
+  // At all nodes together. With the people at this node, they fit into one message to a page.
+  static constexpr std::size_t kMaxPeople = 5000;
 
   struct Change {
     bool any = false;           // the lists differ in something other than cameras
@@ -27,7 +29,8 @@ class PeopleElsewhere {
     std::vector<Uuid> cameras;  // sessions whose cameras have changed
   };
   // Replaces the list of this node. An empty list removes the node. Ignores people whose session is
-  // in the list of another node. If there are already kMaxNodes, ignores the lists of other nodes.
+  // in the list of another node, and people beyond kMaxPeople. If there are already kMaxNodes,
+  // ignores the lists of other nodes.
   Change replace(const Uuid& node, std::vector<Presence> people, Clock::time_point now);
   // Removes the nodes whose last list is older than kSilentAfter.
   Change forget_silent(Clock::time_point now);
@@ -35,6 +38,7 @@ class PeopleElsewhere {
   bool empty() const { return nodes_.empty(); }
   bool has(const Uuid& session) const { return find(session) != nodes_.end(); }
   void each(const std::function<void(const Presence&)>& see) const;
+  void each_at(const Uuid& node, const std::function<void(const Presence&)>& see) const;
 
  private:
   struct Node {

@@ -31,8 +31,8 @@ class PresenceChannel {
   // node. Returns nothing if none arrives within `limit`. Blocks.
   Result<std::vector<std::string>> receive(std::chrono::milliseconds limit);
   // Sends texts of at most kMaxBytes. They arrive without texts of other nodes between them.
-  // Returns false, and sends nothing, if the lease of this node has ended. Returns `busy`, and sends
-  // nothing, if a session does not read its notifications. Blocks.
+  // Returns false, and sends nothing, if the lease of this node has ended. Returns `busy`, and
+  // sends nothing, if a session does not read its notifications. Blocks.
   Result<bool> send(std::span<const std::string> texts);
   void disconnect();  // the next call opens another connection
 

@@ -681,9 +681,21 @@ TEST_F(Following, people_follow_the_view_of_people_at_other_nodes) {
       << "through another person";
   EXPECT_EQ(ben->look_together(false, random_uuid()).error().code, ErrorCode::not_found);
 
+  // A list changes nothing about people of other nodes.
+  room::Presence false_vera, dora;
+  false_vera.session = vera.session();
+  dora.session = random_uuid();
+  false_vera.user = dora.user = "dora";
+  false_vera.color = dora.color = "#112233";
+  const auto texts = room::presence_texts(random_uuid(), model_.id, std::vector{false_vera, dora});
+  ASSERT_TRUE(becomes([&] { return names(*owner_room, *anna) == "anna ben dora vera wim "; },
+                      [&] { send_presence(texts.front()); }));
+  EXPECT_TRUE(
+      becomes([&] { return seen(*owner_room, *anna, "vera").following == anna->session(); }));
+
   const Uuid left = anna->session();
   anna.reset();
-  EXPECT_TRUE(becomes([&] { return names(*follower_, vera) == "ben vera wim "; }));
+  EXPECT_TRUE(becomes([&] { return seen(*follower_, vera, "anna").user.empty(); }));
   EXPECT_FALSE(seen(*follower_, vera, "vera").following);
   EXPECT_EQ(participant_->look_together(false, left).error().code, ErrorCode::not_found);
 }
@@ -760,8 +772,8 @@ TEST_F(Following, an_owner_sends_nothing_while_no_other_node_shows_the_model) {
   carl.user = "carl";
   carl.color = "#112233";
   const auto texts = room::presence_texts(random_uuid(), second->id, {&carl, 1});
-  EXPECT_TRUE(becomes([&] { return has_sent(second->id, a_.id); },
-                      [&] { send_presence(texts.front()); }));
+  EXPECT_TRUE(
+      becomes([&] { return has_sent(second->id, a_.id); }, [&] { send_presence(texts.front()); }));
   for (const auto& [model, node] : sent) EXPECT_EQ(model, second->id);
 
   follow();

@@ -27,6 +27,7 @@ FAULT_WORDS = [
     "could not be renewed",
     "could not join the site again",
     "messages of other nodes",
+    "people at this node could not be sent",
     "models of other nodes cannot be followed",
     "of another node is not up to date",
     "changes at other nodes may be missing",

@@ -7,7 +7,6 @@ namespace strata::room {
 namespace {
 
 using testing::ElementsAre;
-
 using testing::UnorderedElementsAre;
 
 struct PeopleElsewhereTest : testing::Test {
@@ -93,8 +92,24 @@ TEST_F(PeopleElsewhereTest, a_session_is_at_one_node_and_once_in_its_list) {
   people.replace(a, {person(ada, "ada"), person(ada, "again")}, start);
   people.replace(b, {person(ada, "false"), person(bob, "bob")}, start);
   EXPECT_THAT(users(), UnorderedElementsAre("ada", "bob"));
+  std::vector<std::string> at_b;
+  people.each_at(b, [&](const Presence& each) { at_b.push_back(each.user); });
+  EXPECT_THAT(at_b, ElementsAre("bob"));
   people.replace(a, {}, start);
   EXPECT_THAT(users(), ElementsAre("bob"));
+}
+
+TEST_F(PeopleElsewhereTest, the_number_of_people_is_limited) {
+  constexpr auto kMost = PeopleElsewhere::kMaxPeople;
+  std::vector<Presence> many;
+  for (std::size_t i = 0; i < kMost; ++i) many.push_back(person(random_uuid(), "many"));
+  people.replace(b, {person(bob, "bob")}, start);
+  people.replace(a, many, start);
+  EXPECT_EQ(users().size(), kMost);
+  EXPECT_TRUE(people.has(bob));
+  EXPECT_FALSE(people.has(many.back().session));
+  people.replace(a, {person(ada, "ada")}, start);
+  EXPECT_THAT(users(), UnorderedElementsAre("ada", "bob"));
 }
 
 TEST_F(PeopleElsewhereTest, the_number_of_nodes_is_limited) {

@@ -118,7 +118,21 @@ TEST(PresenceMessage, the_longest_names_fit) {
 }
 
 TEST(PresenceMessage, members_of_newer_versions_are_ignored) {
-  EXPECT_TRUE(parse_presence(text_with({{"load", 0.5}})));
+  Presence ada = person("ada");
+  ada.pointer = Pointing{{1, 2, 3}, 0.5};
+  ada.camera = camera();
+  json message = json::parse(presence_texts(kNode, kModel, {&ada, 1}).front());
+  message["load"] = 0.5;
+  json& user = message["users"][0];
+  user["mood"] = {{"happy", true}};
+  user["pointer"]["normal"] = {0, 0, 1};
+  user["camera"]["lens"] = "wide";
+  const auto parsed = parse_presence(message.dump());
+  ASSERT_TRUE(parsed) << parsed.error().detail;
+  ASSERT_EQ(parsed->people.size(), 1u);
+  EXPECT_EQ(parsed->people[0].user, "ada");
+  EXPECT_EQ(parsed->people[0].pointer->radius, 0.5);
+  EXPECT_EQ(parsed->people[0].camera, ada.camera);
 }
 
 TEST(PresenceMessage, other_texts_are_refused) {
@@ -154,7 +168,8 @@ TEST(PresenceMessage, other_texts_are_refused) {
       users_with({{"color", "red"}}),
       users_with({{"pointer", {1, 2, 3}}}),
       users_with({{"camera", json::object()}}),
-      users_with({{"unknown", 1}}),
+      users_with({{"pointer", {{"radius", 1}}}}),
+      users_with({{"following", 1}}),
       text_with(json::object()) + " x",
       std::string(store::PresenceChannel::kMaxBytes + 1, ' '),
   };
