@@ -511,6 +511,7 @@ export const texts = {
     invites: (name) => `${name} lädt Sie zum Folgen ein`,
     accept: "Folgen",
     left: (name) => `${name} hat das Modell verlassen. Sie steuern die Ansicht wieder selbst.`,
+    ended: (name) => `Sie folgen ${name} nicht mehr. Sie steuern die Ansicht wieder selbst.`,
     refused: (name) => `Sie können ${name} nicht folgen`,
   },
 

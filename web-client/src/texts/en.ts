@@ -485,6 +485,7 @@ export const texts = {
     invites: (name: string) => `${name} invites you to follow`,
     accept: "Follow",
     left: (name: string) => `${name} left the model. You control the view again.`,
+    ended: (name: string) => `You no longer follow ${name}. You control the view again.`,
     refused: (name: string) => `${name} cannot be followed`,
   },
 

@@ -507,6 +507,7 @@ export const texts = {
     invites: (name) => `${name} le invita a seguir su vista`,
     accept: "Seguir",
     left: (name) => `${name} se ha ido. Usted vuelve a controlar la vista.`,
+    ended: (name) => `Ya no sigue a ${name}. Usted vuelve a controlar la vista.`,
     refused: (name) => `No se puede seguir a ${name}`,
   },
 

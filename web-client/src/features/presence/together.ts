@@ -29,6 +29,8 @@ export class Together {
   /** The followed participant, in the latest state. */
   followed: PresenceUser | null = null;
 
+  // The server has reported that this connection follows `followed`.
+  private _followsNow = false;
   private _told = ""; // `viewers` as text, without their pointers and cameras
   private _shown: Shown = { pointer: null };
   private _seen = ""; // the camera of the last `look_along` message, as text
@@ -66,6 +68,7 @@ export class Together {
     this.withdraw(viewer.session);
     if (this.followed?.session === viewer.session) return;
     this.followed = viewer;
+    this._followsNow = false;
     this._seen = "";
     this.leading = false;
     this.tell();
@@ -103,6 +106,7 @@ export class Together {
 
   /** Call this after a connection or reconnection. The server has no state of this page yet. */
   connected(): void {
+    this._followsNow = false;
     this._seen = "";
     if (this.leading || this.followed) this.send();
   }
@@ -157,6 +161,15 @@ export class Together {
       notices.show("info", texts.together.left(nameOf(followed)));
       return;
     }
+    // People at two nodes began to follow each other, so the server ended it.
+    const own = this.viewers.find(({ session }) => session === this._host.session());
+    const followsNow = own?.following === followed.session;
+    if (this._followsNow && !followsNow) {
+      this.stopFollowing();
+      notices.show("info", texts.together.ended(nameOf(followed)));
+      return;
+    }
+    this._followsNow = followsNow;
     this.followed = now;
     const seen = now.camera && JSON.stringify(now.camera);
     if (!now.camera || !seen || seen === this._seen) return;

@@ -239,6 +239,24 @@ describe("following somebody", () => {
     ]);
   });
 
+  it("that the server has ended ends, and the person is told", () => {
+    follow(hers(2));
+    const report = (following?: string): void =>
+      socket().receive({
+        op: "presence",
+        users: [following === undefined ? me : { ...me, following }, bea()],
+      });
+    report(); // the server has not received the request yet
+    expect(session.together.followed?.session).toBe("b");
+    report("b");
+    report();
+    expect([session.together.followed, told.map(({ title }) => title), said()]).toEqual([
+      null,
+      [words.ended("Bea Ost")],
+      { op: "presence", pointer: null },
+    ]);
+  });
+
   it("of who follows this window is not offered", () => {
     here(bea({ following: own }), { session: "c", name: "carl", color: "#009e73" });
     expect(session.together.people.map((person) => session.together.canFollow(person))).toEqual([
