@@ -584,7 +584,21 @@ RECORDS = {
     b"2;1;1,5;1 2;3 LINESTRING Z (0 0 1, 2.5 0 1);3 POINT Z (1 2 3);https://a.example;"
     b"2026-11-28T09:30:15Z\r\n",
 }
+PERSON = (
+    b'{"session":"d3b07384-d9a0-4c9b-8f2e-6f1f7f0c1a03","name":"ada","color":"#d55e00",'
+    b'"full_name":"Ada Lovelace","pointer":{"position":[1.5,-2,88],"radius":0.25},"leading":true,'
+    b'"following":"6f9619ff-8b86-4d01-b42d-00cf4fc964ff","camera":{"view":['
+    b"1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1" + b'],"projection":['
+    b"1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1" + b'],"width":640,"height":480}}'
+)
+PRESENCE = {
+    name: b'{"node":"6f9619ff-8b86-4d01-b42d-00cf4fc964ff","model":12,"part":0,"parts":1,"users":['
+    + users
+    + b"]}"
+    for name, users in (("person", PERSON), ("empty", b""))
+}
 for folder, seeds in (
+    ("presence", PRESENCE),
     ("sign_on", SIGN_ON),
     ("provider", PROVIDER),
     ("stored", STORED),
