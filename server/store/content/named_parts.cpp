@@ -99,7 +99,7 @@ Result<NamedPart> NamedParts::create(const NamedPart& part,
                   "A model can have at most " + std::to_string(kind_.most) + " " + kind_.table +
                       ". Delete some first.");
     // A later thinning of the journal sees the snapshot, because it locks the model, too.
-    if (std::string_view(kind_.table) == kSnapshots.table)
+    if (kind_.names_states)
       STRATA_TRY(
           check_kept(connection, part.model_id, part.content.value("sequence", std::int64_t{0})));
     const std::string taken = sql("SELECT slug FROM TABLE WHERE slug LIKE $1 AND model_id = $2");

@@ -38,9 +38,10 @@ class NamedParts {
     const char* name;   // singular
     const char* table;  // all kinds have the same columns
     std::int64_t most;  // limit for one model
+    bool names_states;  // their content has a `sequence`, which must not be thinned
   };
-  static constexpr Kind kViews{"view", "views", 1000}, kTours{"tour", "tours", 100},
-      kSnapshots{"snapshot", "snapshots", 200};
+  static constexpr Kind kViews{"view", "views", 1000, false}, kTours{"tour", "tours", 100, false},
+      kSnapshots{"snapshot", "snapshots", 200, true};
 
   NamedParts(Pool& pool, const Kind& kind) : pool_(pool), kind_(kind) {}
 

@@ -300,13 +300,6 @@ Result<void> replace(PgConnection& connection, const Group& group, const PgArray
   return was_changed();
 }
 
-// Planning reads large journals completely.
-template <class Work>
-auto read(Pool& pool, Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
-  auto lease = STRATA_TRY(pool.acquire(kBulkLimits));
-  return work(*lease);
-}
-
 // Returns whether the error only concerns one group, so the others can be thinned.
 bool is_of_group(const Error& problem) {
   switch (problem.code) {
@@ -364,20 +357,22 @@ Result<void> JournalThinner::check_limit(const Options& options) {
 
 // Returns the last sequence up to which all edits are older than the time.
 Result<std::int64_t> JournalThinner::last_before(ModelId model, Time before) {
-  return read(journal_.pool_, [&](PgConnection& connection) -> Result<std::int64_t> {
-    // OFFSET 0 makes the planner use the index by time. By sequence, it would read all older edits.
-    auto row = STRATA_TRY(connection.query(
-        "SELECT coalesce((SELECT min(sequence) - 1 FROM (SELECT sequence FROM edits WHERE model_id = $1 AND time >= $2 "
-        "OFFSET 0) e), (SELECT max(sequence) FROM edits WHERE model_id = $1), 0)",
-        Params().id(model).time(before)));
-    return row.integer(0, 0);
-  });
+  return journal_.pool_.read_within(
+      kBulkLimits, [&](PgConnection& connection) -> Result<std::int64_t> {
+        // OFFSET 0 makes the planner use the index by time. By sequence, it would read all older
+        // edits.
+        auto row = STRATA_TRY(connection.query(
+            "SELECT coalesce((SELECT min(sequence) - 1 FROM (SELECT sequence FROM edits WHERE model_id = $1 AND time >= $2 "
+            "OFFSET 0) e), (SELECT max(sequence) FROM edits WHERE model_id = $1), 0)",
+            Params().id(model).time(before)));
+        return row.integer(0, 0);
+      });
 }
 
 Result<JournalThinner::Window> JournalThinner::read_window(ModelId model, std::int64_t after,
                                                            std::int64_t through,
                                                            const Options& options) {
-  return read(journal_.pool_, [&](PgConnection& connection) -> Result<Window> {
+  return journal_.pool_.read_within(kBulkLimits, [&](PgConnection& connection) -> Result<Window> {
     Window window;
     window.rules.keep = options.keep;
     auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
@@ -432,7 +427,8 @@ Result<std::vector<JournalThinner::ModelPlan>> JournalThinner::plan(const Option
     }
     if (plan.removed == 0) continue;
     plan.bytes = STRATA_TRY(journal_.revision_bytes(plan.model));
-    const auto revisions = STRATA_TRY(read(journal_.pool_, [&](PgConnection& connection) {
+    const auto revisions = STRATA_TRY(journal_.pool_.read_within(kBulkLimits, [&](PgConnection&
+                                                                                      connection) {
       return connection.query(
           "SELECT coalesce(sum(greatest(coalesce(cardinality(tiles), 1), 1)), 0)::bigint FROM edits WHERE model_id = $1",
           Params().id(plan.model));
@@ -527,7 +523,8 @@ Result<std::int64_t> JournalThinner::thin_group(ModelId model, LayerId layer, st
 Result<void> JournalThinner::forget_answers(const std::string& ref, const Continue& go_on) {
   for (const ModelRow& model : STRATA_TRY(find_models(journal_.pool_, ref))) {
     for (std::int64_t after = 0;;) {
-      const auto old = STRATA_TRY(read(journal_.pool_, [&](PgConnection& connection) {
+      const auto old = STRATA_TRY(journal_.pool_.read_within(kBulkLimits, [&](PgConnection&
+                                                                                  connection) {
         return connection.query(
             "SELECT e.layer_id, e.sequence FROM edits e WHERE e.model_id = $1 AND e.sequence > $2 AND e.op = 'checkpoint' "
             "AND e.time < clock_timestamp() - $3 * interval '1 day' "

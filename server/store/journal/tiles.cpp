@@ -393,13 +393,14 @@ Result<std::vector<WrittenTiles>> Journal::written_by(const Layer& layer,
 }
 
 Result<std::uint64_t> Journal::revision_bytes(ModelId model_id) {
-  auto lease = STRATA_TRY(pool_.acquire(kBulkLimits));
-  auto row = STRATA_TRY((*lease).query(
-      "SELECT (SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0) "
-      "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1)::bigint + "
-      "(SELECT coalesce(sum(octet_length(s.content)), 0) FROM layers l JOIN tile_segments s ON s.layer_id = l.id "
-      "WHERE l.model_id = $1)::bigint",
-      Params().id(model_id)));
+  auto row = STRATA_TRY(pool_.read_within(kBulkLimits, [&](PgConnection& connection) {
+    return connection.query(
+        "SELECT (SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0) "
+        "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1)::bigint + "
+        "(SELECT coalesce(sum(octet_length(s.content)), 0) FROM layers l JOIN tile_segments s ON s.layer_id = l.id "
+        "WHERE l.model_id = $1)::bigint",
+        Params().id(model_id));
+  }));
   return static_cast<std::uint64_t>(row.integer(0, 0));
 }
 

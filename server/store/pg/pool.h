@@ -54,8 +54,13 @@ class Pool {
   // connection broke.
   template <class Work>
   auto read(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
+    return read_within(limits_, std::forward<Work>(work));
+  }
+  template <class Work>
+  auto read_within(const PgLimits& limits, Work&& work)
+      -> std::invoke_result_t<Work, PgConnection&> {
     for (bool again = true;; again = false) {
-      auto lease = STRATA_TRY(acquire());
+      auto lease = STRATA_TRY(acquire(limits));
       auto result = work(*lease);
       if (result || !again || (*lease).alive() || result.error().code != ErrorCode::unavailable)
         return result;
