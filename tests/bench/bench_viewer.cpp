@@ -31,7 +31,7 @@ namespace {
 
 struct Options {
   std::string model = "pot:100000", cache = "build/bench", json;
-  int layers = 3, strokes = 200, frames = 300;
+  int layers = 3, strokes = 200, frames = 300, minutes = 1;
   double radius = 40;
 };
 
@@ -169,31 +169,43 @@ class OneViewer {
   }
 
   // A real client sends a batch every 30 ms. The stored bytes do not depend on the speed of this
-  // replay.
+  // replay. Merges after each minute, as a server does. The first minutes keep more than later
+  // ones, because up to 31 revisions of each tile wait for others before they are packed.
   nlohmann::json steady_painting() {
-    const auto bytes_before = must(site_.store->journal().revision_bytes(model_.id));
-    constexpr int kBatches = 2000, kBatchesOfStroke = 50;
+    constexpr int kBatchesPerMinute = 2000, kBatchesOfStroke = 50;
+    const auto stored_mb = [&] {
+      return double(must(site_.store->journal().revision_bytes(model_.id))) / 1e6;
+    };
+    store::JournalMerger merger(site_.store->journal());
     Wander hand(1280, 720, 7);
     Uuid stroke;
-    for (int i = 0; i < kBatches; ++i) {
+    const double mb_at_first = stored_mb();
+    std::vector<double> mb_by_minute{mb_at_first};
+    double written_mb = 0;
+    for (int i = 0; i < options_.minutes * kBatchesPerMinute; ++i) {
       if (i % kBatchesOfStroke == 0) stroke = random_uuid();
       const glm::dvec2 from = hand.at();
       edit_and_wait(*room_, batch_request(stroke, i % kBatchesOfStroke, {from, hand.step()},
                                           1 + (i / kBatchesOfStroke) % 100));
+      if ((i + 1) % kBatchesPerMinute != 0) continue;
+      written_mb += stored_mb() - mb_by_minute.back();
+      must(merger.merge(model_.id, must(site_.store->journal().state(model_.id, {})).epoch,
+                        std::chrono::system_clock::now() + std::chrono::hours(1),
+                        [] { return true; }));
+      mb_by_minute.push_back(stored_mb());
     }
-    const auto mb_per_hour = [&] {
-      return double(must(site_.store->journal().revision_bytes(model_.id)) - bytes_before) /
-             kBatches * (3600 / 0.03) / 1e6;
-    };
-    const double written = mb_per_hour();
-    store::JournalMerger merger(site_.store->journal());
-    must(merger.merge(model_.id, must(site_.store->journal().state(model_.id, {})).epoch,
-                      std::chrono::system_clock::now() + std::chrono::hours(1),
-                      [] { return true; }));
-    const double kept = mb_per_hour();
-    std::printf("steady painting writes %.0f MB per hour, and keeps %.0f MB after the merge\n",
-                written, kept);
-    return {{"revision_mb_per_hour", written}, {"merged_mb_per_hour", kept}};
+    const double minutes = options_.minutes, half = options_.minutes / 2;
+    const double kept_mb = mb_by_minute.back() - mb_at_first;
+    const double late_mb_per_hour =
+        (mb_by_minute.back() - mb_by_minute[options_.minutes / 2]) * 60 / (minutes - half);
+    std::printf(
+        "%d min of steady painting write %.0f MB per hour, and keep %.1f MB after merges; their second half keeps %.0f MB per hour\n",
+        options_.minutes, written_mb * 60 / minutes, kept_mb, late_mb_per_hour);
+    return {{"painted_minutes", options_.minutes},
+            {"revision_mb_per_hour", written_mb * 60 / minutes},
+            {"merged_mb_per_hour", kept_mb * 60 / minutes},
+            {"merged_mb_per_hour_second_half", late_mb_per_hour},
+            {"merged_mb_by_minute", mb_by_minute}};
   }
 
   std::size_t triangles() const { return bench_.geometry->triangle_count(); }
@@ -285,6 +297,11 @@ Command add_viewer(CLI::App& app) {
   command->add_option("--radius", options->radius, "Brush radius in pixels")->capture_default_str();
   command->add_option("--strokes", options->strokes)->capture_default_str();
   command->add_option("--frames", options->frames)->capture_default_str();
+  command
+      ->add_option("--minutes", options->minutes,
+                   "Minutes of steady painting, replayed as fast as the machine can")
+      ->check(CLI::Range(1, 600))
+      ->capture_default_str();
   command->add_option("--cache", options->cache, "Where generated meshes are kept")
       ->capture_default_str();
   command->add_option("--json", options->json, "Write the results here");

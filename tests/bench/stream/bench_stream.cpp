@@ -79,7 +79,7 @@ std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& option
     CrowdCase resting = common;
     resting.idle = idle;
     add("idle", resting, links.front(), 0, Hands::rest);
-    if (idle == options.idle.front()) continue;  // measured above
+    if (idle == options.idle.front() && options.has("active")) continue;  // measured above
     for (const int active : options.active)
       add("idle", resting, links.front(), active, hands_of(active, can_paint).back());
   }
