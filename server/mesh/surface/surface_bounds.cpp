@@ -83,6 +83,7 @@ void SurfaceBake::pack_slots(int band) {
       const int i = std::countr_zero(rest);
       map_.packed_position[std::size_t{slot} * 64 + i] = pack_position(positions[i], packed_box);
     }
+    map_.sums_of_slot[slot] = map_.sum_slot(slot);
     map_.bounds_of_slot[slot] = bounds_of(positions, owned, slack);
     add_parts_of_block({part_of(slot), map_.bounds_of_slot[slot]}, positions, owned, least_gap,
                        slack, parts_of_band_[band]);

@@ -211,6 +211,7 @@ void SurfaceBake::assign_slots(int threads) {
   if (purpose_ == BakeFor::owners) return;
   map_.packed_box.resize(slots);
   map_.bounds_of_slot.resize(slots);
+  map_.sums_of_slot.resize(slots);
   box_of_slot_.resize(slots);
 }
 

@@ -1,5 +1,7 @@
 #include "mesh/texels/surface_map.h"
 
+#include <bit>
+
 #include "mesh/texels/packed_position.h"
 #include "mesh/texels/slot_bits.h"
 
@@ -26,10 +28,28 @@ float SurfaceMap::area_of(TileAddress tile, int texel) const {
   return place.slot == kNoSlot ? 0 : area[std::size_t{place.slot} * 64 + place.texel];
 }
 
+void SurfaceMap::add_texel(SlotSums& sums, std::uint32_t slot, int texel) const {
+  const double texel_area = area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
+  const glm::vec3 at = position(slot, texel);
+  ++sums.texels;
+  sums.area += texel_area;
+  sums.weighted_position += texel_area * glm::dvec3(at);
+  sums.lowest = glm::min(sums.lowest, at);
+  sums.highest = glm::max(sums.highest, at);
+}
+
+SurfaceMap::SlotSums SurfaceMap::sum_slot(std::uint32_t slot) const {
+  SlotSums sums;
+  for (std::uint64_t rest = surface_mask[slot]; rest != 0; rest &= rest - 1)
+    add_texel(sums, slot, std::countr_zero(rest));
+  return sums;
+}
+
 std::size_t SurfaceMap::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return of(slot_of_block) + of(block_of_slot) + of(packed_position) + of(packed_box) +
-         of(surface_mask) + of(area) + of(bounds_of_slot) + of(bounds_of_tile) + tree.bytes();
+         of(surface_mask) + of(area) + of(sums_of_slot) + of(bounds_of_slot) + of(bounds_of_tile) +
+         tree.bytes();
 }
 
 }  // namespace strata::mesh

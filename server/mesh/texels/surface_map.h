@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <vector>
 
 #include "core/error.h"
@@ -49,6 +50,19 @@ struct SurfaceMap {
   std::vector<std::uint64_t> surface_mask;
   std::vector<float> area;  // 64 per slot, in unit²; 0 for gutter texels
 
+  // Sums of surface texels of one slot. Doubles add 64 such values with hardly a loss.
+  struct SlotSums {
+    std::uint64_t texels = 0;
+    double area = 0;                  // in unit²
+    glm::dvec3 weighted_position{0};  // sum of area × position
+    glm::vec3 lowest{std::numeric_limits<float>::infinity()};
+    glm::vec3 highest{-std::numeric_limits<float>::infinity()};
+    bool operator==(const SlotSums&) const = default;
+  };
+  // The sums of all surface texels of each slot. Most blocks that somebody paints get one value, so
+  // their texels need not be added again after each stroke.
+  std::vector<SlotSums> sums_of_slot;
+
   std::vector<BoundingSphere> bounds_of_slot;
   std::vector<BoundingSphere> bounds_of_tile;  // (resolution/128)², row-major
   BlockTree tree;
@@ -63,6 +77,8 @@ struct SurfaceMap {
   TileMask owned_in_tile(TileAddress tile) const;  // surface and gutter texels
   TileMask surface_in_tile(TileAddress tile) const;
   float area_of(TileAddress tile, int texel) const;  // in unit²
+  void add_texel(SlotSums& sums, std::uint32_t slot, int texel) const;
+  SlotSums sum_slot(std::uint32_t slot) const;  // what `sums_of_slot` stores
   std::size_t bytes() const;
 };
 

@@ -29,11 +29,10 @@ inline std::uint64_t block_bits(const TileMask& mask, int block_x, int block_y) 
   return bits;
 }
 
-// Calls visit(slot, texel in the block, bits of the value) for each valid surface texel of a tile,
-// block by block. `within` restricts the texels; null means all texels. `Bits` is the unsigned type
-// that stores a texel of the layer.
-template <class Bits, class Visit>
-void for_each_texel_of(const TileData& tile, TileAddress address, const mesh::SurfaceMap& map,
+// Calls visit(slot, flags of the valid surface texels, first texel of the block in the tile) for
+// each block of a tile with such texels. `within` restricts the texels; null means all texels.
+template <class Visit>
+void for_each_block_of(const TileData& tile, TileAddress address, const mesh::SurfaceMap& map,
                        const TexelSelection* within, Visit&& visit) {
   for (int by = 0; by < kBlocksPerTile; ++by) {
     const auto row =
@@ -44,19 +43,35 @@ void for_each_texel_of(const TileData& tile, TileAddress address, const mesh::Su
           map.slot_of_block[row + static_cast<std::size_t>(address.x) * kBlocksPerTile +
                             static_cast<std::size_t>(bx)];
       if (slot == mesh::kNoSlot) continue;
-      std::uint64_t rest = map.surface_mask[slot] & block_bits(tile.valid, bx, by);
-      if (within) rest &= (*within)[slot];
-      const int corner = by * kBlockSize * kTileSize + bx * kBlockSize;
-      for (; rest != 0; rest &= rest - 1) {
-        const int texel = std::countr_zero(rest);
-        const int in_tile = corner + texel / kBlockSize * kTileSize + texel % kBlockSize;
-        Bits bits;
-        std::memcpy(&bits, tile.values.data() + static_cast<std::size_t>(in_tile) * sizeof(Bits),
-                    sizeof(Bits));
-        visit(slot, texel, bits);
-      }
+      std::uint64_t texels = map.surface_mask[slot] & block_bits(tile.valid, bx, by);
+      if (within) texels &= (*within)[slot];
+      if (texels != 0) visit(slot, texels, by * kBlockSize * kTileSize + bx * kBlockSize);
     }
   }
+}
+
+// Returns the bits of a texel of a block. `Bits` is the unsigned type that stores a texel.
+template <class Bits>
+Bits bits_in_block(const TileData& tile, int corner, int texel) {
+  const int in_tile = corner + texel / kBlockSize * kTileSize + texel % kBlockSize;
+  Bits bits;
+  std::memcpy(&bits, tile.values.data() + static_cast<std::size_t>(in_tile) * sizeof(Bits),
+              sizeof(Bits));
+  return bits;
+}
+
+// Calls visit(slot, texel in the block, bits of the value) for each valid surface texel of a tile,
+// block by block.
+template <class Bits, class Visit>
+void for_each_texel_of(const TileData& tile, TileAddress address, const mesh::SurfaceMap& map,
+                       const TexelSelection* within, Visit&& visit) {
+  for_each_block_of(tile, address, map, within,
+                    [&](std::uint32_t slot, std::uint64_t texels, int corner) {
+                      for (; texels != 0; texels &= texels - 1) {
+                        const int texel = std::countr_zero(texels);
+                        visit(slot, texel, bits_in_block<Bits>(tile, corner, texel));
+                      }
+                    });
 }
 
 // Returns the decoded values of all bit patterns of a type of one or two bytes, because half floats

@@ -1,30 +1,27 @@
 #include "query/statistics/surface_keys.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <limits>
 #include <unordered_map>
 
-#include "mesh/texels/packed_position.h"
 #include "query/conditions/texel_values.h"
 
 namespace strata::query {
 namespace {
 
-// The sums of consecutive texels with one key in one block. A block has 64 texels, and doubles add
-// so few floats without a loss, so only the sums of runs need to be compensated.
+// The sums of consecutive texels with one key in one block. Only the sums of runs need to be
+// compensated.
 struct Run {
-  std::uint32_t slot = mesh::kNoSlot, bits = 0;
-  std::uint64_t texels = 0;
-  double area = 0;
-  glm::dvec3 weighted_position{0};  // sum of area × position
-  glm::vec3 lowest{std::numeric_limits<float>::infinity()};
-  glm::vec3 highest{-std::numeric_limits<float>::infinity()};
+  std::uint32_t bits = 0;
+  mesh::SurfaceMap::SlotSums sums;
 };
 
 class KeysOfRuns {
  public:
   void add(const Run& run) {
-    if (run.texels == 0) return;
+    if (run.sums.texels == 0) return;
     if (keys_.empty() || keys_[last_].bits != run.bits) {
       constexpr double kInfinity = std::numeric_limits<double>::infinity();
       const auto [found, fresh] = index_.try_emplace(run.bits, keys_.size());
@@ -33,8 +30,8 @@ class KeysOfRuns {
             {run.bits, 0, 0, glm::dvec3(0), glm::dvec3(kInfinity), glm::dvec3(-kInfinity)});
       last_ = found->second;
     }
-    keys_[last_].add({run.bits, run.texels, run.area, run.weighted_position, glm::dvec3(run.lowest),
-                      glm::dvec3(run.highest)});
+    keys_[last_].add({run.bits, run.sums.texels, run.sums.area, run.sums.weighted_position,
+                      glm::dvec3(run.sums.lowest), glm::dvec3(run.sums.highest)});
   }
   std::vector<TileSums::Key> take() {
     std::ranges::sort(keys_, {}, &TileSums::Key::bits);
@@ -47,6 +44,47 @@ class KeysOfRuns {
   std::size_t last_ = 0;  // neighboring runs mostly share a key
 };
 
+// Returns whether all these texels of a block have the same bits.
+template <class Bits>
+bool are_equal(const TileData& tile, std::uint64_t texels, int corner) {
+  const auto first = bits_in_block<Bits>(tile, corner, std::countr_zero(texels));
+  for (; texels != 0; texels &= texels - 1)
+    if (bits_in_block<Bits>(tile, corner, std::countr_zero(texels)) != first) return false;
+  return true;
+}
+
+template <class Bits>
+std::vector<TileSums::Key> keys_of(const TileData& tile, TileAddress address, const Layer& layer,
+                                   const mesh::SurfaceMap& map) {
+  const bool apart = tells_keys_apart(layer);
+  const double* values = values_of_bits(layer.type);
+  const auto is_finite = [&](Bits bits) {
+    return std::isfinite(values == nullptr ? decode_value(layer.type, bits) : values[bits]);
+  };
+  KeysOfRuns keys;
+  for_each_block_of(
+      tile, address, map, nullptr, [&](std::uint32_t slot, std::uint64_t texels, int corner) {
+        Run run;
+        if (texels == map.surface_mask[slot] && are_equal<Bits>(tile, texels, corner)) {
+          const auto bits = bits_in_block<Bits>(tile, corner, std::countr_zero(texels));
+          if (is_finite(bits)) keys.add({apart ? bits : 0u, map.sums_of_slot[slot]});
+          return;
+        }
+        for (; texels != 0; texels &= texels - 1) {
+          const int texel = std::countr_zero(texels);
+          const auto bits = bits_in_block<Bits>(tile, corner, texel);
+          if (!is_finite(bits)) continue;
+          if (apart && bits != run.bits) {
+            keys.add(run);
+            run = {bits, {}};
+          }
+          map.add_texel(run.sums, slot, texel);
+        }
+        keys.add(run);
+      });
+  return keys.take();
+}
+
 }  // namespace
 
 bool tells_keys_apart(const Layer& layer) {
@@ -55,29 +93,11 @@ bool tells_keys_apart(const Layer& layer) {
 
 std::vector<TileSums::Key> surface_keys(const TileData& tile, TileAddress address,
                                         const Layer& layer, const mesh::SurfaceMap& map) {
-  const bool apart = tells_keys_apart(layer);
-  KeysOfRuns keys;
-  Run run;
-  for_each_value(tile, address, layer.type, map, nullptr,
-                 [&](std::uint32_t slot, int texel, std::uint32_t all_bits, double) {
-                   const std::uint32_t bits = apart ? all_bits : 0;
-                   if (slot != run.slot || bits != run.bits) {
-                     keys.add(run);
-                     run = {.slot = slot, .bits = bits};
-                   }
-                   const std::size_t place =
-                       std::size_t{slot} * 64 + static_cast<std::size_t>(texel);
-                   const double area = map.area[place];
-                   const glm::vec3 position =
-                       mesh::unpack_position(map.packed_position[place], map.packed_box[slot]);
-                   ++run.texels;
-                   run.area += area;
-                   run.weighted_position += area * glm::dvec3(position);
-                   run.lowest = glm::min(run.lowest, position);
-                   run.highest = glm::max(run.highest, position);
-                 });
-  keys.add(run);
-  return keys.take();
+  switch (bytes_per_texel(layer.type)) {
+    case 1: return keys_of<std::uint8_t>(tile, address, layer, map);
+    case 2: return keys_of<std::uint16_t>(tile, address, layer, map);
+    default: return keys_of<std::uint32_t>(tile, address, layer, map);
+  }
 }
 
 }  // namespace strata::query

@@ -276,6 +276,31 @@ TEST_P(EveryGeometry, stores_only_blocks_that_hold_something) {
   }
 }
 
+TEST_P(EveryGeometry, sums_the_surface_texels_of_each_block) {
+  const SurfaceMap map = bake(geometry());
+  ASSERT_EQ(map.sums_of_slot.size(), map.block_of_slot.size());
+  std::uint64_t texels = 0;
+  double area = 0;
+  for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
+    const auto& sums = map.sums_of_slot[slot];
+    texels += sums.texels;
+    area += sums.area;
+    for (int i = 0; i < 64; ++i) {
+      if (!(map.surface_mask[slot] >> i & 1)) continue;
+      const glm::vec3 position = map.position(slot, i);
+      ASSERT_TRUE(glm::all(glm::lessThanEqual(sums.lowest, position)));
+      ASSERT_TRUE(glm::all(glm::greaterThanEqual(sums.highest, position)));
+    }
+    if (sums.area == 0) continue;
+    const glm::dvec3 center = sums.weighted_position / sums.area;
+    const glm::dvec3 slack(1e-9 * (glm::length(center) + 1));
+    ASSERT_TRUE(glm::all(glm::lessThanEqual(glm::dvec3(sums.lowest) - slack, center)));
+    ASSERT_TRUE(glm::all(glm::greaterThanEqual(glm::dvec3(sums.highest) + slack, center)));
+  }
+  EXPECT_EQ(texels, map.surface_texels);
+  EXPECT_NEAR(area, map.area_total, 1e-6 * map.area_total);
+}
+
 TEST_P(EveryGeometry, credits_the_area_of_the_whole_mesh) {
   double expected = 0;
   const Oracle oracle(geometry());

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <tuple>
 #include <utility>
 
 #include "mesh/texels/packed_position.h"
@@ -44,6 +45,7 @@ mesh::SurfaceMap make_map(int resolution, double share, unsigned seed) {
     }
     map.surface_mask.push_back(surface);
     map.packed_box.push_back(mesh::packed_box_of({-1, -2, -3}, {1, 2, 3}));
+    map.sums_of_slot.push_back(map.sum_slot(map.slot_of_block[block]));
   }
   return map;
 }
@@ -96,13 +98,18 @@ std::vector<Sample> samples(const LayerView& view, const mesh::SurfaceMap& map) 
 
 TEST(QueryStatistics, keys_of_a_tile_agree_with_a_plain_sum_over_every_texel) {
   const mesh::SurfaceMap map = make_map(256, 0.6, 5);
-  // Few and many keys, the bit pattern 0, and a layer whose values are not distinguished.
-  for (const auto& [type, distinct] : {std::pair{ValueType::u8, 1},
-                                       {ValueType::u8, 3},
-                                       {ValueType::u8, 200},
-                                       {ValueType::f32, 9}}) {
-    SCOPED_TRACE(std::string(name(type)) + " with " + std::to_string(distinct) + " values");
-    const LayerView layer = make_layer(type, map, distinct, 12);
+  // Few and many keys, the bit pattern 0, blocks with one value, and layers whose values are not
+  // distinguished.
+  for (const auto& [type, distinct, everywhere] : {std::tuple{ValueType::u8, 1, false},
+                                                   {ValueType::u8, 1, true},
+                                                   {ValueType::u8, 3, false},
+                                                   {ValueType::u8, 200, true},
+                                                   {ValueType::u16, 1, true},
+                                                   {ValueType::f32, 1, true},
+                                                   {ValueType::f32, 9, false}}) {
+    SCOPED_TRACE(std::string(name(type)) + " with " + std::to_string(distinct) + " values" +
+                 (everywhere ? " everywhere" : ""));
+    const LayerView layer = make_layer(type, map, distinct, 12, everywhere);
     const bool apart = tells_keys_apart(layer.layer);
     EXPECT_EQ(apart, type == ValueType::u8);
     for (const auto& [address, tile] : layer.snapshot.tiles) {
