@@ -124,6 +124,7 @@ export class Connection {
     giveUp: () => this.giveUpSocket(),
   });
   private _failing = false;
+  private _stroke: StrokeHandle | null = null; // the newest one
   private _pathPoints = 4096;
   private readonly _resender = new Resender((message) => this.send(message));
   private readonly _search = new NodeSearch(
@@ -320,9 +321,10 @@ export class Connection {
     if (this._state !== "open" || this.full) return null;
     const begin = beginOf(options);
     this.change(begin);
-    return new StrokeHandle(begin.stroke, this._pathPoints, (message) => {
+    this._stroke = new StrokeHandle(begin.stroke, this._pathPoints, (message) => {
       if (this._outbox.hasStroke(begin.stroke)) this.change(message);
     });
+    return this._stroke;
   }
 
   /** Sends an edit, undo or redo. Returns its id, or null while edits are not possible. */
@@ -380,8 +382,10 @@ export class Connection {
       case "welcome":
         return this.onWelcome(message);
       case "applied":
+        this.onPainted(message);
         return this._callbacks.applied(message);
       case "saved":
+        this.onPainted(message);
         this._outbox.saved(message);
         this._failing = false;
         this._resender.succeeded();
@@ -459,6 +463,10 @@ export class Connection {
     this._callbacks.takenUp(changes);
     if (this._state === "open") this.resend();
     this.reportSaving();
+  }
+
+  private onPainted({ stroke, n }: Applied | Saved): void {
+    if (n !== undefined && stroke === this._stroke?.stroke) this._stroke?.painted(n);
   }
 
   private onProblem(message: ProblemMessage): void {

@@ -31,12 +31,23 @@ export const beginOf = (options: StrokeOptions): StrokeBegin => ({
   ...(options.max_angle_deg === undefined ? {} : { max_angle_deg: options.max_angle_deg }),
 });
 
+/** More batches on their way would only wait for each other on a server with much work. */
+export const kMostUnanswered = 4;
+/** Then waiting points are sent anyway, so that the page stores them and a lost reply is harmless. */
+export const kLongestWait_ms = 250;
+
 /**
  * A stroke during drawing. The server moves the brush from the last point of the previous batch.
+ * While `kMostUnanswered` batches are not painted yet, further points wait and become one batch.
+ * So painters on a server with much work see their paint sooner.
  */
 export class StrokeHandle {
   private _n = 0;
+  private _painted = -1; // the newest batch that the server has painted
   private _ended = false;
+  private _points: Point[] = []; // not sent yet
+  private _widths: number[] = []; // of these points
+  private _timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     readonly stroke: string,
@@ -50,22 +61,41 @@ export class StrokeHandle {
    */
   extend(points: readonly Point[], widths?: readonly number[]): void {
     if (this._ended || points.length === 0) return;
+    this._points.push(...points);
+    this._widths.push(...(widths ?? points.map(() => 1)));
+    if (this._n - 1 - this._painted < kMostUnanswered) this.send();
+    else this._timer ??= setTimeout(() => this.send(), kLongestWait_ms);
+  }
+
+  /** The server has painted the batch n, and all batches before it. */
+  painted(n: number): void {
+    this._painted = Math.max(this._painted, n);
+    if (this._n - 1 - this._painted < kMostUnanswered) this.send();
+  }
+
+  end(): void {
+    if (this._ended) return;
+    this.send();
+    this._ended = true;
+    this._change({ op: "stroke.end", id: newId(), stroke: this.stroke });
+  }
+
+  private send(): void {
+    clearTimeout(this._timer);
+    this._timer = undefined;
+    const [points, widths] = [this._points, this._widths];
+    this._points = [];
+    this._widths = [];
     for (let start = 0; start < points.length; start += this._pathPoints) {
-      const path = points.slice(start, start + this._pathPoints);
+      const part = widths.slice(start, start + this._pathPoints);
       this._change({
         op: "stroke.extend",
         id: newId(),
         stroke: this.stroke,
         n: this._n++,
-        path,
-        ...(widths ? { widths: widths.slice(start, start + this._pathPoints) } : {}),
+        path: points.slice(start, start + this._pathPoints),
+        ...(part.some((width) => width !== 1) ? { widths: part } : {}),
       });
     }
-  }
-
-  end(): void {
-    if (this._ended) return;
-    this._ended = true;
-    this._change({ op: "stroke.end", id: newId(), stroke: this.stroke });
   }
 }

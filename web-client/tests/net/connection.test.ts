@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import golden from "../../../protocol/golden/frame_headers.json";
 import { Connection, type ConnectionCallbacks } from "../../src/net/connection";
-import type { StrokeOptions } from "../../src/net/stroke";
+import type { StrokeHandle, StrokeOptions } from "../../src/net/stroke";
 import type { ChangeMessage } from "../../src/net/outbox";
 import type { Layer } from "../../src/core/protocol.gen";
 import { FakeSocket, welcome } from "../fake-socket";
@@ -33,6 +33,14 @@ const saving = (): unknown => callbacks.saving.mock.lastCall?.[0];
 function connect(strokes: Parameters<typeof welcome>[0] = []): void {
   socket().open();
   socket().receive(welcome(strokes));
+}
+
+/** Extends the stroke by batches of one point, which the server paints at once. */
+function extendPainted(stroke: StrokeHandle, batches: number): void {
+  for (let n = 0; n < batches; ++n) {
+    stroke.extend([[n, n]]);
+    socket().receive({ op: "applied", stroke: stroke.stroke, n, sequence: 1 + n });
+  }
 }
 
 beforeEach(() => {
@@ -107,7 +115,7 @@ describe("opening", () => {
   it("takes no stroke while too much waits to be saved, and says that this is why", () => {
     connect();
     const stroke = connection.beginStroke(strokeOptions)!;
-    for (let i = 0; i <= 5000; ++i) stroke.extend([[i, i]]);
+    extendPainted(stroke, 5001);
     expect([connection.beginStroke(strokeOptions), connection.full]).toEqual([null, true]);
     socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 1 });
     expect(connection.full).toBe(false);
@@ -446,7 +454,7 @@ describe("a lost connection", () => {
   it("resends no faster than the server takes, and new changes stay behind the old ones", () => {
     connect(); // messages_per_second is 200
     const stroke = connection.beginStroke(strokeOptions)!;
-    for (let i = 0; i < 250; ++i) stroke.extend([[i, i]]);
+    extendPainted(stroke, 250);
     socket().lose();
     vi.advanceTimersByTime(300);
     connect();

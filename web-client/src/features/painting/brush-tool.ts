@@ -1,5 +1,5 @@
 // Brush and eraser. A drag becomes a stroke in the selected layer, sent as one batch for each
-// animation frame.
+// animation frame, or less often if the server has much work (net/stroke).
 
 import type { StrokeHandle, Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
@@ -100,10 +100,7 @@ export class BrushTool implements Tool {
 
   private flush(): void {
     if (this._waiting.length === 0) return;
-    this._stroke?.extend(
-      this._waiting,
-      this._widths.some((width) => width !== 1) ? this._widths : undefined,
-    );
+    this._stroke?.extend(this._waiting, this._widths);
     this._waiting = [];
     this._widths = [];
   }
