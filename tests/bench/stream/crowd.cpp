@@ -164,7 +164,7 @@ bool Crowd::all_see_what_they_do() const {
 bool Crowd::has_painted_since(double begin_ms) const {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const auto& batches = active_[i]->batches();
-    if (case_.paints(int(i)) && (batches.empty() || batches.back().sent_ms < begin_ms))
+    if (case_.paints(int(i)) && (batches.empty() || batches.back().since_ms < begin_ms))
       return false;
   }
   return true;

@@ -43,11 +43,11 @@ void add_refined_times(const LiveClient& client, Samples& times) {
 void add_batch_times(const LiveClient& painter, const LiveClient& viewer, double begin_ms,
                      double end_ms, Samples& times) {
   for (const auto& batch : painter.batches()) {
-    if (!batch.has_changed || batch.sent_ms < begin_ms || batch.sent_ms >= end_ms) continue;
+    if (!batch.has_changed || batch.since_ms < begin_ms || batch.since_ms >= end_ms) continue;
     const auto& frames = viewer.frames();
     const auto seen =
         std::ranges::lower_bound(frames, *batch.sequence, {}, &LiveClient::Frame::scene_sequence);
-    if (seen != frames.end()) times.add(seen->at_ms - batch.sent_ms);
+    if (seen != frames.end()) times.add(seen->at_ms - batch.since_ms);
   }
 }
 
@@ -90,7 +90,7 @@ nlohmann::json crowd_figures(const CrowdCase& crowd, const Viewers& active, cons
     refused += std::uint64_t(client.refused());
     unanswered += std::uint64_t(client.unanswered());
     for (const auto& batch : client.batches()) {
-      if (batch.sent_ms < begin.at_ms || batch.sent_ms >= end.at_ms) continue;
+      if (batch.since_ms < begin.at_ms || batch.since_ms >= end.at_ms) continue;
       ++batches;
       unchanged += batch.sequence && !batch.has_changed;
     }

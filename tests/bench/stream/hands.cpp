@@ -5,6 +5,8 @@
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "bench/harness.h"
 #include "bench/stream/wander.h"
@@ -18,8 +20,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kTurnStep_rad = 0.008;
 constexpr auto kCameraEvery = 16ms;
-constexpr auto kBatchEvery = 30ms;
-constexpr int kBatchesOfStroke = 20;
+constexpr auto kMoveEvery = 30ms;
+constexpr int kMovesOfStroke = 20;
+constexpr int kMostUnanswered = 4;       // as in web-client/src/net/stroke.ts
+constexpr double kLongestWait_ms = 250;  // likewise
 
 // A timer with regular ticks. It does not repeat missed ticks.
 class Beat {
@@ -62,18 +66,28 @@ asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, 
 
 asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle, unsigned seed,
                             const bool& stop) {
-  Beat beat(co_await asio::this_coro::executor, kBatchEvery);
+  Beat beat(co_await asio::this_coro::executor, kMoveEvery);
   const Camera camera = stage.from(angle);
   Wander hand(stage.width, stage.height, seed);
   unsigned stroke = seed;
   while (!stop && !client.is_lost()) {
     client.begin_stroke(stage.layer, camera, 1 + ++stroke % 200, stage.radius_px);
-    for (int i = 0; i < kBatchesOfStroke && !stop; ++i) {
-      const glm::dvec2 from = hand.at();
-      client.extend_stroke({from, hand.step()});
-      do co_await beat.next();
-      while (client.unanswered() >= kMaxUnanswered && !stop && !client.is_lost());
+    std::vector<glm::dvec2> path;
+    double since_ms = 0;
+    const auto send = [&] {
+      if (!path.empty()) client.extend_stroke(std::exchange(path, {}), since_ms);
+    };
+    for (int i = 0; i < kMovesOfStroke && !stop; ++i) {
+      if (path.empty()) {
+        path.push_back(hand.at());
+        since_ms = now_ms();
+      }
+      path.push_back(hand.step());
+      if (client.unanswered_of_stroke() < kMostUnanswered || now_ms() - since_ms >= kLongestWait_ms)
+        send();
+      co_await beat.next();
     }
+    send();
     client.end_stroke();
   }
 }

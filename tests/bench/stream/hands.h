@@ -21,18 +21,15 @@ struct Stage {
 };
 
 // The actions of a viewer until `stop` is true. Like the page, a turning viewer sends a camera for
-// each refresh of the screen (16 ms) without waiting for frames. A painting viewer sends a batch of
-// a stroke every 30 ms.
+// each refresh of the screen (16 ms) without waiting for frames. The hand of a painting viewer
+// moves every 30 ms, and sends the points as a batch like the page (web-client/src/net/stroke.ts).
 boost::asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double angle,
                                   const bool& stop);
 // Sends each camera after the frame of the previous one, so the times do not include the wait for
 // earlier frames.
 boost::asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, double angle,
                                                const bool& stop);
-// Paints strokes of 20 batches with a camera at rest. Each stroke has a new value. Waits while
-// kMaxUnanswered batches are not yet applied, because more batches would only lengthen the queue
-// and all times.
-constexpr int kMaxUnanswered = 16;
+// Paints strokes of 20 moves with a camera at rest. Each stroke has a new value.
 boost::asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle,
                                    unsigned seed, const bool& stop);
 

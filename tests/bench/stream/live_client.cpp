@@ -94,15 +94,20 @@ void LiveClient::begin_stroke(const std::string& layer, const Camera& camera, do
   send(begin);
 }
 
-void LiveClient::extend_stroke(const std::vector<glm::dvec2>& path) {
+void LiveClient::extend_stroke(const std::vector<glm::dvec2>& path, double since_ms) {
   protocol::StrokeExtend extend;
   extend.id = random_uuid();
   extend.stroke = stroke_;
   extend.n = next_number_++;
   extend.path = path;
   unanswered_.push_back(batches_.size());
-  batches_.push_back({extend.id, stroke_, extend.n, now_ms()});
+  batches_.push_back({extend.id, stroke_, extend.n, since_ms});
   send(extend);
+}
+
+int LiveClient::unanswered_of_stroke() const {
+  return int(std::ranges::count_if(
+      unanswered_, [&](std::size_t index) { return batches_[index].stroke == stroke_; }));
 }
 
 void LiveClient::end_stroke() {

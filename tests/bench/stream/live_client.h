@@ -49,7 +49,7 @@ class LiveClient {
   struct Batch {  // a batch of a stroke
     Uuid id, stroke;
     int number;
-    double sent_ms;
+    double since_ms;  // the time at which the hand moved to its first point
     std::optional<std::uint64_t> sequence = {};  // set once the batch is applied
     bool has_changed = false;                    // has changed at least one texel
   };
@@ -69,7 +69,8 @@ class LiveClient {
   // Waits until a frame with the newest camera has arrived or the connection is lost.
   boost::asio::awaitable<void> newest_camera_shown();
   void begin_stroke(const std::string& layer, const Camera& camera, double value, double radius_px);
-  void extend_stroke(const std::vector<glm::dvec2>& path);
+  // `since_ms`: the time at which the hand moved to the first point.
+  void extend_stroke(const std::vector<glm::dvec2>& path, double since_ms);
   void end_stroke();
   void stop_reading() { is_reading_ = false; }  // later data stays in the kernel
 
@@ -80,6 +81,7 @@ class LiveClient {
   const std::string& why_lost() const { return why_lost_; }
   // The number of batches that are neither applied nor refused.
   int unanswered() const { return int(unanswered_.size()); }
+  int unanswered_of_stroke() const;  // of the current stroke
   int refused() const { return refused_; }
   Counts counts() const { return {frames_.size(), bytes_, stream().rate_policy().bytes_read()}; }
   const std::vector<Frame>& frames() const { return frames_; }
