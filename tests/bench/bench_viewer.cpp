@@ -168,7 +168,8 @@ class OneViewer {
             {"in_turn_encode", encode_ms.json()}};
   }
 
-  // A real client sends a batch every 30 ms. The stored bytes do not depend on the speed of this
+  // A batch every 30 ms. The page sends one for each frame of the screen, which is up to twice as
+  // many, or fewer if the server has much work. The stored bytes do not depend on the speed of this
   // replay. Merges after each minute, as a server does. The first minutes keep more than later
   // ones, because up to 31 revisions of each tile wait for others before they are packed.
   nlohmann::json steady_painting() {
@@ -194,10 +195,11 @@ class OneViewer {
                         [] { return true; }));
       mb_by_minute.push_back(stored_mb());
     }
-    const double minutes = options_.minutes, half = options_.minutes / 2;
+    const double minutes = options_.minutes;
+    const int half = options_.minutes / 2;
     const double kept_mb = mb_by_minute.back() - mb_at_first;
     const double late_mb_per_hour =
-        (mb_by_minute.back() - mb_by_minute[options_.minutes / 2]) * 60 / (minutes - half);
+        (mb_by_minute.back() - mb_by_minute[std::size_t(half)]) * 60 / (minutes - half);
     std::printf(
         "%d min of steady painting write %.0f MB per hour, and keep %.1f MB after merges; their second half keeps %.0f MB per hour\n",
         options_.minutes, written_mb * 60 / minutes, kept_mb, late_mb_per_hour);

@@ -19,8 +19,8 @@ enum class BakeFor { map, owners };
 
 // The steps of baking a surface map. Work is divided into fixed horizontal bands of the atlas, so
 // the result does not depend on the assignment to threads. Within a band, triangles are in
-// ascending order. For BakeFor::owners the steps end with place_gutter, and the positions and areas
-// of the map stay empty.
+// ascending order. For BakeFor::owners the steps end with place_gutter, and the positions, areas
+// and sums of the map stay empty.
 class SurfaceBake {
  public:
   SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map,
@@ -37,9 +37,10 @@ class SurfaceBake {
   void share_grids();              // after box_slots of all bands
   void credit_areas(int band);     // after place_surface of all bands
   void credit_leftovers();         // after credit_areas of all bands
-  void pack_slots(int band);       // packed positions and bounds; after share_grids
-  void bound_tiles();              // after pack_slots of all bands
-  void plant_tree(int threads);    // after pack_slots of all bands
+  // Packed positions, bounds and sums; after share_grids and credit_leftovers.
+  void pack_slots(int band);
+  void bound_tiles();            // after pack_slots of all bands
+  void plant_tree(int threads);  // after pack_slots of all bands
 
   // The results of place_surface and place_gutter for painting by triangle. They have 64 entries
   // per slot and are defined for surface texels only. Weights store the second corner in the low 16

@@ -50,7 +50,8 @@ struct SurfaceMap {
   std::vector<std::uint64_t> surface_mask;
   std::vector<float> area;  // 64 per slot, in unit²; 0 for gutter texels
 
-  // Sums of surface texels of one slot. Doubles add 64 such values with hardly a loss.
+  // Sums of surface texels of one slot. A sum of 64 such values in double precision loses almost
+  // nothing.
   struct SlotSums {
     std::uint64_t texels = 0;
     double area = 0;                  // in unit²
@@ -59,8 +60,8 @@ struct SurfaceMap {
     glm::vec3 highest{-std::numeric_limits<float>::infinity()};
     bool operator==(const SlotSums&) const = default;
   };
-  // The sums of all surface texels of each slot. Most blocks that somebody paints get one value, so
-  // their texels need not be added again after each stroke.
+  // The sums of all surface texels of each slot. After a stroke, most changed blocks have one
+  // value. Their sums need not be computed again.
   std::vector<SlotSums> sums_of_slot;
 
   std::vector<BoundingSphere> bounds_of_slot;
@@ -78,7 +79,7 @@ struct SurfaceMap {
   TileMask surface_in_tile(TileAddress tile) const;
   float area_of(TileAddress tile, int texel) const;  // in unit²
   void add_texel(SlotSums& sums, std::uint32_t slot, int texel) const;
-  SlotSums sum_slot(std::uint32_t slot) const;  // what `sums_of_slot` stores
+  SlotSums sum_slot(std::uint32_t slot) const;  // the value for `sums_of_slot`
   std::size_t bytes() const;
 };
 

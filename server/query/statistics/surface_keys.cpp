@@ -11,8 +11,8 @@
 namespace strata::query {
 namespace {
 
-// The sums of consecutive texels with one key in one block. Only the sums of runs need to be
-// compensated.
+// The sums of consecutive texels with one key in one block. A run has at most 64 texels, so only
+// the sums over runs need to be compensated.
 struct Run {
   std::uint32_t bits = 0;
   mesh::SurfaceMap::SlotSums sums;

@@ -67,7 +67,7 @@ class OpenRoom::ParticipantsPart final : public Participants {
  private:
   // Call these functions while holding `mutex_`.
   bool is_here(const Uuid& session) const;
-  // Records whom a person at another node follows. Returns whether anything has changed.
+  // Records the person that a person at another node follows. Returns whether anything has changed.
   bool follow_elsewhere(const Presence& person);
   void announce(const PeopleElsewhere::Change& change);
 

@@ -38,7 +38,7 @@ class NamedParts {
     const char* name;   // singular
     const char* table;  // all kinds have the same columns
     std::int64_t most;  // limit for one model
-    bool names_states;  // their content has a `sequence`, which must not be thinned
+    bool names_states;  // their content has a `sequence`; a thinned state cannot be named
   };
   static constexpr Kind kViews{"view", "views", 1000, false}, kTours{"tour", "tours", 100, false},
       kSnapshots{"snapshot", "snapshots", 200, true};

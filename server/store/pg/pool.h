@@ -42,7 +42,6 @@ class Pool {
     PgConnection connection_;
     int outage_;
   };
-  Result<Lease> acquire() { return acquire(limits_); }
   Result<Lease> acquire(const PgLimits& limits);
 
   // Closes all connections that exist now: idle ones at once, and others when their work ends. Call
@@ -56,6 +55,7 @@ class Pool {
   auto read(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     return read_within(limits_, std::forward<Work>(work));
   }
+  // Like `read`, but with these limits of time.
   template <class Work>
   auto read_within(const PgLimits& limits, Work&& work)
       -> std::invoke_result_t<Work, PgConnection&> {
@@ -73,6 +73,7 @@ class Pool {
   auto write(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     return write_within(limits_, std::forward<Work>(work));
   }
+  // Like `write`, but with these limits of time.
   template <class Work>
   auto write_within(const PgLimits& limits, Work&& work)
       -> std::invoke_result_t<Work, PgConnection&> {

@@ -22,8 +22,7 @@ constexpr double kTurnStep_rad = 0.008;
 constexpr auto kCameraEvery = 16ms;
 constexpr auto kMoveEvery = 30ms;
 constexpr int kMovesOfStroke = 20;
-constexpr int kMostUnanswered = 4;       // as in web-client/src/net/stroke.ts
-constexpr double kLongestWait_ms = 250;  // likewise
+constexpr double kLongestWait_ms = 250;  // as in web-client/src/net/stroke.ts
 
 // A timer with regular ticks. It does not repeat missed ticks.
 class Beat {
@@ -77,14 +76,13 @@ asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle
     const auto send = [&] {
       if (!path.empty()) client.extend_stroke(std::exchange(path, {}), since_ms);
     };
-    for (int i = 0; i < kMovesOfStroke && !stop; ++i) {
+    for (int i = 0; i < kMovesOfStroke && !stop && !client.is_lost(); ++i) {
       if (path.empty()) {
         path.push_back(hand.at());
         since_ms = now_ms();
       }
       path.push_back(hand.step());
-      if (client.unanswered_of_stroke() < kMostUnanswered || now_ms() - since_ms >= kLongestWait_ms)
-        send();
+      if (!client.is_behind() || now_ms() - since_ms >= kLongestWait_ms) send();
       co_await beat.next();
     }
     send();

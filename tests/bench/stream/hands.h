@@ -22,7 +22,8 @@ struct Stage {
 
 // The actions of a viewer until `stop` is true. Like the page, a turning viewer sends a camera for
 // each refresh of the screen (16 ms) without waiting for frames. The hand of a painting viewer
-// moves every 30 ms, and sends the points as a batch like the page (web-client/src/net/stroke.ts).
+// moves every 30 ms, and sends the points as a batch by the rule of the page
+// (web-client/src/net/stroke.ts). Unlike the page, it looks for replies only when it moves.
 boost::asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double angle,
                                   const bool& stop);
 // Sends each camera after the frame of the previous one, so the times do not include the wait for

@@ -26,6 +26,10 @@ namespace websocket = beast::websocket;
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kMaxMessage = 64u << 20;
 
+// As in web-client/src/net/batch-flow.ts.
+constexpr std::size_t kMostUnanswered = 4;
+constexpr double kUsualDelay_ms = 50, kLongestRoundTrip_ms = 300;
+
 protocol::CameraUpdate camera_update(const Camera& camera, std::uint64_t seq, bool moving) {
   protocol::CameraUpdate update;
   update.seq = std::int64_t(seq);
@@ -44,7 +48,8 @@ LiveClient::LiveClient(asio::io_context& context, asio::ip::tcp::endpoint at,
     : socket_(context),
       at_(at),
       server_port_(server_port),
-      has_news_(context, asio::steady_timer::time_point::max()) {}
+      has_news_(context, asio::steady_timer::time_point::max()),
+      quickest_ms_(kLongestRoundTrip_ms) {}
 
 asio::awaitable<void> LiveClient::open(const std::string& model, const std::string& token,
                                        const Camera& camera) {
@@ -101,13 +106,13 @@ void LiveClient::extend_stroke(const std::vector<glm::dvec2>& path, double since
   extend.n = next_number_++;
   extend.path = path;
   unanswered_.push_back(batches_.size());
-  batches_.push_back({extend.id, stroke_, extend.n, since_ms});
+  batches_.push_back({extend.id, stroke_, extend.n, since_ms, now_ms()});
   send(extend);
 }
 
-int LiveClient::unanswered_of_stroke() const {
-  return int(std::ranges::count_if(
-      unanswered_, [&](std::size_t index) { return batches_[index].stroke == stroke_; }));
+bool LiveClient::is_behind() const {
+  return unanswered_.size() >= kMostUnanswered &&
+         now_ms() - batches_[unanswered_.front()].sent_ms > quickest_ms_ + kUsualDelay_ms;
 }
 
 void LiveClient::end_stroke() {
@@ -179,6 +184,7 @@ std::optional<std::size_t> LiveClient::answered(Matches matches) {
   if (found == unanswered_.end()) return std::nullopt;
   const std::size_t index = *found;
   unanswered_.erase(found);
+  quickest_ms_ = std::min(quickest_ms_, now_ms() - batches_[index].sent_ms);
   return index;
 }
 

@@ -50,6 +50,7 @@ class LiveClient {
     Uuid id, stroke;
     int number;
     double since_ms;  // the time at which the hand moved to its first point
+    double sent_ms;
     std::optional<std::uint64_t> sequence = {};  // set once the batch is applied
     bool has_changed = false;                    // has changed at least one texel
   };
@@ -81,7 +82,8 @@ class LiveClient {
   const std::string& why_lost() const { return why_lost_; }
   // The number of batches that are neither applied nor refused.
   int unanswered() const { return int(unanswered_.size()); }
-  int unanswered_of_stroke() const;  // of the current stroke
+  // Whether further points should wait, like the page's (web-client/src/net/batch-flow.ts).
+  bool is_behind() const;
   int refused() const { return refused_; }
   Counts counts() const { return {frames_.size(), bytes_, stream().rate_policy().bytes_read()}; }
   const std::vector<Frame>& frames() const { return frames_; }
@@ -121,6 +123,7 @@ class LiveClient {
   std::vector<Batch> batches_;
   std::vector<std::size_t> unanswered_;  // indices of a few elements of `batches_`
   Uuid stroke_{};                        // the current stroke
+  double quickest_ms_;                   // the shortest time from a batch to its reply
   int next_number_ = 0, refused_ = 0;
   std::uint64_t bytes_ = 0;
 };

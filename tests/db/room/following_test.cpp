@@ -231,7 +231,7 @@ class Following : public RoomTest {
     return room.participants().join({user, role}, std::move(portrait), nullptr,
                                     [](const stream::FrameMessages&) {});
   }
-  // Returns the names of the people whom this participant sees, in alphabetical order.
+  // Returns the names of the people that this participant sees, in alphabetical order.
   static std::string names(room::Room& room, const room::Participant& receiver) {
     std::set<std::string> users;
     for (const auto& person : room.participants().presence(receiver.session()))

@@ -73,6 +73,26 @@ LayerView make_layer(ValueType type, const mesh::SurfaceMap& map, int distinct, 
   return view;
 }
 
+// Each block has one value, and its neighbors have other values. With `with_gaps`, some blocks are
+// not finite, and some are only partly finite. Floats only.
+LayerView make_layer_of_blocks(ValueType type, LayerKind kind, const mesh::SurfaceMap& map,
+                               bool with_gaps = false) {
+  LayerView view = make_layer(type, map, 1, 1, true);
+  view.layer.kind = kind;
+  const std::uint32_t not_a_number = std::bit_cast<std::uint32_t>(std::nanf(""));
+  for (const auto& [address, tile] : view.snapshot.tiles) {
+    auto changed = std::make_shared<TileData>(*tile);
+    for (int i = 0; i < kTexelsPerTile; ++i) {
+      const int bx = i % kTileSize / kBlockSize, by = i / kTileSize / kBlockSize;
+      const int value = 1 + (bx + 3 * by) % 7;
+      const bool gap = with_gaps && (value == 3 || (value == 5 && i % 3 == 0));
+      changed->write(i, gap ? not_a_number : *encode_value(type, value));
+    }
+    view.snapshot.tiles[address] = changed;
+  }
+  return view;
+}
+
 struct Sample {
   double value, area;
   glm::dvec3 position;
@@ -96,10 +116,45 @@ std::vector<Sample> samples(const LayerView& view, const mesh::SurfaceMap& map) 
   return all;
 }
 
+void expect_keys_of_plain_sums(const LayerView& layer, const mesh::SurfaceMap& map) {
+  const bool apart = tells_keys_apart(layer.layer);
+  for (const auto& [address, tile] : layer.snapshot.tiles) {
+    LayerView one = layer;
+    one.snapshot.tiles = {{address, tile}};
+    std::map<double, std::vector<Sample>> expected;
+    for (const Sample& sample : samples(one, map))
+      if (std::isfinite(sample.value)) expected[apart ? sample.value : 0].push_back(sample);
+    const auto keys = surface_keys(*tile, address, layer.layer, map);
+    ASSERT_EQ(keys.size(), expected.size());
+    std::size_t i = 0;
+    for (const auto& [value, texels] : expected) {
+      const auto& key = keys[i++];
+      if (apart) {
+        EXPECT_EQ(key.bits, *encode_value(layer.layer.type, value));
+      }
+      EXPECT_EQ(key.texels, texels.size());
+      double area = 0;
+      glm::dvec3 weighted(0), low(1e300), high(-1e300);
+      for (const Sample& sample : texels) {
+        const glm::dvec3 position = sample.position - kOrigin;
+        area += sample.area;
+        weighted += sample.area * position;
+        low = glm::min(low, position);
+        high = glm::max(high, position);
+      }
+      EXPECT_NEAR(key.area.value(), area, 1e-9);
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(key.weighted_position[axis], weighted[axis], 1e-5);
+        EXPECT_NEAR(key.lowest[axis], low[axis], 1e-9);
+        EXPECT_NEAR(key.highest[axis], high[axis], 1e-9);
+      }
+    }
+  }
+}
+
 TEST(QueryStatistics, keys_of_a_tile_agree_with_a_plain_sum_over_every_texel) {
   const mesh::SurfaceMap map = make_map(256, 0.6, 5);
-  // Few and many keys, the bit pattern 0, blocks with one value, and layers whose values are not
-  // distinguished.
+  // Few and many keys, the bit pattern 0, and layers whose values are not distinguished.
   for (const auto& [type, distinct, everywhere] : {std::tuple{ValueType::u8, 1, false},
                                                    {ValueType::u8, 1, true},
                                                    {ValueType::u8, 3, false},
@@ -110,38 +165,21 @@ TEST(QueryStatistics, keys_of_a_tile_agree_with_a_plain_sum_over_every_texel) {
     SCOPED_TRACE(std::string(name(type)) + " with " + std::to_string(distinct) + " values" +
                  (everywhere ? " everywhere" : ""));
     const LayerView layer = make_layer(type, map, distinct, 12, everywhere);
-    const bool apart = tells_keys_apart(layer.layer);
-    EXPECT_EQ(apart, type == ValueType::u8);
-    for (const auto& [address, tile] : layer.snapshot.tiles) {
-      LayerView one = layer;
-      one.snapshot.tiles = {{address, tile}};
-      std::map<double, std::vector<Sample>> expected;
-      for (const Sample& sample : samples(one, map))
-        expected[apart ? sample.value : 0].push_back(sample);
-      const auto keys = surface_keys(*tile, address, layer.layer, map);
-      ASSERT_EQ(keys.size(), expected.size());
-      std::size_t i = 0;
-      for (const auto& [value, texels] : expected) {
-        const auto& key = keys[i++];
-        EXPECT_EQ(key.bits, apart ? std::uint32_t(value) : key.bits);
-        EXPECT_EQ(key.texels, texels.size());
-        double area = 0;
-        glm::dvec3 weighted(0), low(1e300), high(-1e300);
-        for (const Sample& sample : texels) {
-          const glm::dvec3 position = sample.position - kOrigin;
-          area += sample.area;
-          weighted += sample.area * position;
-          low = glm::min(low, position);
-          high = glm::max(high, position);
-        }
-        EXPECT_NEAR(key.area.value(), area, 1e-9);
-        for (int axis = 0; axis < 3; ++axis) {
-          EXPECT_NEAR(key.weighted_position[axis], weighted[axis], 1e-5);
-          EXPECT_NEAR(key.lowest[axis], low[axis], 1e-9);
-          EXPECT_NEAR(key.highest[axis], high[axis], 1e-9);
-        }
-      }
-    }
+    EXPECT_EQ(tells_keys_apart(layer.layer), type == ValueType::u8);
+    expect_keys_of_plain_sums(layer, map);
+  }
+}
+
+TEST(QueryStatistics, keys_of_blocks_with_one_value_agree_with_a_plain_sum) {
+  const mesh::SurfaceMap map = make_map(256, 0.6, 6);
+  for (const auto& [type, kind, with_gaps] : {std::tuple{ValueType::u8, LayerKind::numeric, false},
+                                              {ValueType::i8, LayerKind::numeric, false},
+                                              {ValueType::u16, LayerKind::database, false},
+                                              {ValueType::u32, LayerKind::database, false},
+                                              {ValueType::f32, LayerKind::numeric, false},
+                                              {ValueType::f32, LayerKind::numeric, true}}) {
+    SCOPED_TRACE(std::string(name(type)) + (with_gaps ? " with gaps" : ""));
+    expect_keys_of_plain_sums(make_layer_of_blocks(type, kind, map, with_gaps), map);
   }
 }
 

@@ -6,6 +6,7 @@ import { newId } from "../core/ids";
 import type { CameraMessage } from "../math/camera";
 import { decodeFrame, FrameError, type FrameMessage } from "./frame-header";
 import { Outbox, type ChangeMessage, type SingleChange } from "./outbox";
+import { BatchFlow } from "./batch-flow";
 import { CameraSender } from "./camera-sender";
 import { addressAtNode } from "./node-address";
 import { NodeSearch } from "./node-search";
@@ -125,6 +126,7 @@ export class Connection {
   });
   private _failing = false;
   private _stroke: StrokeHandle | null = null; // the newest one
+  private readonly _flow = new BatchFlow();
   private _pathPoints = 4096;
   private readonly _resender = new Resender((message) => this.send(message));
   private readonly _search = new NodeSearch(
@@ -321,8 +323,10 @@ export class Connection {
     if (this._state !== "open" || this.full) return null;
     const begin = beginOf(options);
     this.change(begin);
-    this._stroke = new StrokeHandle(begin.stroke, this._pathPoints, (message) => {
-      if (this._outbox.hasStroke(begin.stroke)) this.change(message);
+    this._stroke = new StrokeHandle(begin.stroke, this._pathPoints, this._flow, (message) => {
+      if (!this._outbox.hasStroke(begin.stroke)) return;
+      if (message.op === "stroke.extend") this._flow.sent(message);
+      this.change(message);
     });
     return this._stroke;
   }
@@ -433,6 +437,7 @@ export class Connection {
   private onWelcome(message: Welcome): void {
     this._attempts = 0;
     this._moved = false;
+    this._flow.restart();
     this._pathPoints = message.limits.path_points;
     this._resender.messagesPerSecond = Math.max(
       1,
@@ -466,11 +471,14 @@ export class Connection {
   }
 
   private onPainted({ stroke, n }: Applied | Saved): void {
-    if (n !== undefined && stroke === this._stroke?.stroke) this._stroke?.painted(n);
+    if (stroke === undefined || n === undefined) return;
+    this._flow.painted(stroke, n);
+    this._stroke?.proceed();
   }
 
   private onProblem(message: ProblemMessage): void {
     const { op: _, ...problem } = message;
+    if (message.ref !== undefined) this._flow.refused(message.ref);
     if (
       message.ref !== undefined &&
       (message.ref === kAdvice || this._silenced.delete(message.ref))
@@ -500,7 +508,7 @@ export class Connection {
 
   /** Discards the waiting changes, because the model was deleted. */
   forget(): void {
-    this._queue?.remove(this._outbox.messages().map((message) => message.id));
+    this._outbox.clear();
   }
 
   private resend(): void {

@@ -134,6 +134,11 @@ export class Outbox {
     });
   }
 
+  /** Discards everything. Later batches of an unfinished stroke are not accepted. */
+  clear(): void {
+    this.shrink(() => (this._entries = []));
+  }
+
   /** Returns the messages to send again, in order. */
   messages(): ChangeMessage[] {
     return this._entries.flatMap((entry): ChangeMessage[] =>

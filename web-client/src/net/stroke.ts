@@ -3,6 +3,7 @@
 import { newId } from "../core/ids";
 import type { CameraMessage } from "../math/camera";
 import type { StrokeBegin, ToolShape } from "../core/protocol.gen";
+import type { BatchFlow } from "./batch-flow";
 import type { ChangeMessage } from "./outbox";
 
 export type Point = [number, number];
@@ -31,19 +32,19 @@ export const beginOf = (options: StrokeOptions): StrokeBegin => ({
   ...(options.max_angle_deg === undefined ? {} : { max_angle_deg: options.max_angle_deg }),
 });
 
-/** More batches on their way would only wait for each other on a server with much work. */
-export const kMostUnanswered = 4;
-/** Then waiting points are sent anyway, so that the page stores them and a lost reply is harmless. */
-export const kLongestWait_ms = 250;
+/**
+ * After this time, waiting points are sent in any case. So the page also stores them, and continues
+ * if a reply is lost.
+ */
+export const kLongestWaitMs = 250;
 
 /**
  * A stroke during drawing. The server moves the brush from the last point of the previous batch.
- * While `kMostUnanswered` batches are not painted yet, further points wait and become one batch.
- * So painters on a server with much work see their paint sooner.
+ * While the server does not keep up, further points wait and become one batch. So painters see their
+ * paint sooner on a busy server.
  */
 export class StrokeHandle {
   private _n = 0;
-  private _painted = -1; // the newest batch that the server has painted
   private _ended = false;
   private _points: Point[] = []; // not sent yet
   private _widths: number[] = []; // of these points
@@ -52,25 +53,26 @@ export class StrokeHandle {
   constructor(
     readonly stroke: string,
     private readonly _pathPoints: number,
+    private readonly _flow: Pick<BatchFlow, "isBehind">,
     private readonly _change: (message: ChangeMessage) => void,
   ) {}
 
   /**
-   * Adds points to the path. `widths` is the fraction of the brush radius at each point. Without
-   * `widths`, the whole radius applies.
+   * Adds points to the path, which may wait until the server keeps up. `widths` is the fraction of
+   * the brush radius at each point. Without `widths`, the whole radius applies.
    */
   extend(points: readonly Point[], widths?: readonly number[]): void {
     if (this._ended || points.length === 0) return;
     this._points.push(...points);
     this._widths.push(...(widths ?? points.map(() => 1)));
-    if (this._n - 1 - this._painted < kMostUnanswered) this.send();
-    else this._timer ??= setTimeout(() => this.send(), kLongestWait_ms);
+    this.proceed();
   }
 
-  /** The server has painted the batch n, and all batches before it. */
-  painted(n: number): void {
-    this._painted = Math.max(this._painted, n);
-    if (this._n - 1 - this._painted < kMostUnanswered) this.send();
+  /** Sends the waiting points if the server keeps up. */
+  proceed(): void {
+    if (this._points.length === 0) return;
+    if (!this._flow.isBehind) this.send();
+    else this._timer ??= setTimeout(() => this.send(), kLongestWaitMs);
   }
 
   end(): void {

@@ -2,7 +2,8 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import golden from "../../../protocol/golden/frame_headers.json";
 import { Connection, type ConnectionCallbacks } from "../../src/net/connection";
-import type { StrokeHandle, StrokeOptions } from "../../src/net/stroke";
+import { kLongestRoundTripMs, kUsualDelayMs } from "../../src/net/batch-flow";
+import { kLongestWaitMs, type StrokeHandle, type StrokeOptions } from "../../src/net/stroke";
 import type { ChangeMessage } from "../../src/net/outbox";
 import type { Layer } from "../../src/core/protocol.gen";
 import { FakeSocket, welcome } from "../fake-socket";
@@ -412,6 +413,51 @@ describe("a lost connection", () => {
     connection.sendChange({ op: "undo", id: "u", layer: 7 });
     connection.forget();
     expect(shelved).toEqual([]);
+  });
+
+  it("keeps no points that waited when the model went", () => {
+    connect();
+    const stroke = connection.beginStroke(strokeOptions)!;
+    for (let n = 0; n < 4; ++n) stroke.extend([[n, n]]);
+    vi.advanceTimersByTime(kLongestRoundTripMs + kUsualDelayMs + 1);
+    stroke.extend([[4, 4]]);
+    expect(socket().of("stroke.extend")).toHaveLength(4);
+    connection.forget();
+    vi.advanceTimersByTime(kLongestWaitMs);
+    expect(shelved).toEqual([]);
+  });
+
+  it("sends waiting points when a batch of an earlier stroke was painted", () => {
+    connect();
+    const first = connection.beginStroke(strokeOptions)!;
+    for (let n = 0; n < 4; ++n) first.extend([[n, n]]);
+    first.end();
+    vi.advanceTimersByTime(kLongestRoundTripMs + kUsualDelayMs + 1);
+    const second = connection.beginStroke(strokeOptions)!;
+    second.extend([[4, 4]]);
+    expect(socket().of("stroke.extend")).toHaveLength(4);
+    socket().receive({ op: "saved", stroke: first.stroke, n: 0, sequence: 1 });
+    expect(socket().of("stroke.extend")).toHaveLength(5);
+  });
+
+  it("does not wait for the batches of a refused stroke", () => {
+    connect();
+    const refused = connection.beginStroke(strokeOptions)!;
+    for (let n = 0; n < 4; ++n) refused.extend([[n, n]]);
+    for (const { id } of [...socket().of("stroke.begin"), ...socket().of("stroke.extend")])
+      socket().receive({
+        op: "problem",
+        ref: id,
+        status: 403,
+        title: "Forbidden",
+        detail: "",
+        type: "/problems#forbidden",
+      });
+    vi.advanceTimersByTime(kLongestRoundTripMs + kUsualDelayMs + 1);
+    refused.extend([[4, 4]]);
+    const next = connection.beginStroke(strokeOptions)!;
+    next.extend([[5, 5]]);
+    expect(socket().of("stroke.extend")).toHaveLength(5);
   });
 
   it("sends nothing again when all was saved", () => {

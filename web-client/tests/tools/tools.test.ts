@@ -30,7 +30,12 @@ beforeEach(() => {
     beginStroke(erase) {
       if (this.refuse) return null;
       this.begun.push(erase);
-      return new StrokeHandle("s", 4096, (message) => void messages.push(message));
+      return new StrokeHandle(
+        "s",
+        4096,
+        { isBehind: false },
+        (message) => void messages.push(message),
+      );
     },
     strokeEnded() {
       this.ended += 1;
