@@ -1040,13 +1040,17 @@ CREATE TABLE public.all_models (
     open_edges jsonb,
     owner_node uuid,
     owner_epoch bigint DEFAULT 0 NOT NULL,
+    object_id bigint,
+    survey_date text DEFAULT ''::text NOT NULL,
     CONSTRAINT all_models_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
     CONSTRAINT all_models_owner_epoch_check CHECK ((owner_epoch >= 0)),
+    CONSTRAINT all_models_survey_date_check CHECK ((survey_date ~ '^([0-9]{4}(-[0-9]{2}){0,2})?$'::text)),
     CONSTRAINT models_bounds_max_check CHECK ((cardinality(bounds_max) = 3)),
     CONSTRAINT models_bounds_min_check CHECK ((cardinality(bounds_min) = 3)),
     CONSTRAINT models_name_check CHECK ((name <> ''::text)),
     CONSTRAINT models_origin_check CHECK ((cardinality(origin) = 3)),
     CONSTRAINT models_source_download_check CHECK ((source_download = ANY (ARRAY['viewer'::text, 'annotator'::text, 'curator'::text]))),
+    CONSTRAINT models_survey_check CHECK (((object_id IS NULL) = (survey_date = ''::text))),
     CONSTRAINT models_unit_check CHECK ((unit = ANY (ARRAY['mm'::text, 'cm'::text, 'm'::text]))),
     CONSTRAINT models_up_check CHECK ((up = ANY (ARRAY['x'::text, 'y'::text, 'z'::text, '-x'::text, '-y'::text, '-z'::text])))
 );
@@ -1120,7 +1124,9 @@ CREATE VIEW public.models AS
     all_models.proposal,
     all_models.open_edges,
     all_models.owner_node,
-    all_models.owner_epoch
+    all_models.owner_epoch,
+    all_models.object_id,
+    all_models.survey_date
    FROM public.all_models
   WHERE (all_models.binned IS NULL);
 
@@ -1268,6 +1274,14 @@ CREATE VIEW analysis.layers WITH (security_barrier='true') AS
      JOIN public.models m ON ((m.id = l.model_id)))
   WHERE (l.visibility = 'public'::text);
 
+CREATE TABLE public.objects (
+    id bigint NOT NULL,
+    project_id bigint NOT NULL,
+    name text NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT objects_name_check CHECK (((char_length(name) >= 1) AND (char_length(name) <= 255)))
+);
+
 CREATE TABLE public.projects (
     id bigint NOT NULL,
     name text NOT NULL,
@@ -1305,9 +1319,12 @@ CREATE VIEW analysis.models WITH (security_barrier='true') AS
     m.creator,
     m.credit,
     m.sequence,
-    analysis.srid(m.crs) AS srid
-   FROM (public.models m
-     JOIN public.projects p ON ((p.id = m.project_id)));
+    analysis.srid(m.crs) AS srid,
+    o.name AS object,
+    NULLIF(m.survey_date, ''::text) AS survey_date
+   FROM ((public.models m
+     JOIN public.projects p ON ((p.id = m.project_id)))
+     LEFT JOIN public.objects o ON ((o.id = m.object_id)));
 
 CREATE VIEW analysis.projects WITH (security_barrier='true') AS
  SELECT projects.id AS project_id,
@@ -1746,6 +1763,15 @@ CREATE TABLE public.nodes (
     CONSTRAINT nodes_version_check CHECK ((char_length(version) <= 255))
 );
 
+ALTER TABLE public.objects ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.objects_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.pending_sign_ins (
     state bytea NOT NULL,
     browser bytea NOT NULL,
@@ -2148,6 +2174,12 @@ ALTER TABLE ONLY public.node_messages
 ALTER TABLE ONLY public.nodes
     ADD CONSTRAINT nodes_pkey PRIMARY KEY (id);
 
+ALTER TABLE ONLY public.objects
+    ADD CONSTRAINT objects_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.objects
+    ADD CONSTRAINT objects_project_id_id_key UNIQUE (project_id, id);
+
 ALTER TABLE ONLY public.pending_sign_ins
     ADD CONSTRAINT pending_sign_ins_pkey PRIMARY KEY (state);
 
@@ -2341,11 +2373,15 @@ CREATE INDEX models_binned ON public.all_models USING btree (binned) WHERE (binn
 
 CREATE INDEX models_geometry ON public.all_models USING btree (geometry);
 
+CREATE INDEX models_object ON public.all_models USING btree (object_id) WHERE (object_id IS NOT NULL);
+
 CREATE INDEX models_project ON public.all_models USING btree (project_id);
 
 CREATE UNIQUE INDEX models_slug ON public.all_models USING btree (slug) WHERE (binned IS NULL);
 
 CREATE INDEX node_messages_xid ON public.node_messages USING btree (xid);
+
+CREATE UNIQUE INDEX objects_name ON public.objects USING btree (project_id, lower(name));
 
 CREATE INDEX pending_sign_ins_expires ON public.pending_sign_ins USING btree (expires);
 
@@ -2469,7 +2505,7 @@ CREATE TRIGGER model_in_bin_is_activity AFTER UPDATE OF binned ON public.all_mod
 
 CREATE TRIGGER model_in_trash_is_audited AFTER UPDATE OF binned, erasing ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.in_trash_is_audited('model');
 
-CREATE TRIGGER model_is_activity AFTER INSERT OR UPDATE OF name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('model');
+CREATE TRIGGER model_is_activity AFTER INSERT OR UPDATE OF name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, object_id, survey_date ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('model');
 
 CREATE TRIGGER project_deletion_is_audited AFTER DELETE ON public.projects FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('project');
 
@@ -2630,7 +2666,13 @@ ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_geometry_fkey FOREIGN KEY (geometry) REFERENCES public.blobs(sha256);
 
 ALTER TABLE ONLY public.all_models
+    ADD CONSTRAINT models_object_fkey FOREIGN KEY (project_id, object_id) REFERENCES public.objects(project_id, id);
+
+ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
+
+ALTER TABLE ONLY public.objects
+    ADD CONSTRAINT objects_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.personal_views
     ADD CONSTRAINT personal_views_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;

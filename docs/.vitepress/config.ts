@@ -22,6 +22,7 @@ const howTo = {
     "follow-activity",
     "read-the-audit-log",
     "see-the-past",
+    "compare-surveys",
     "use-the-trash",
   ],
   "Show results": ["save-views", "print-figures", "make-tours", "run-a-kiosk", "show-the-demo"],

@@ -112,6 +112,10 @@ Command add_import(CLI::App& app) {
   command->add_option("--up", options->request.up, "Axis that points up, for example --up=-y")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
   command->add_option("--crs", options->request.crs, "Coordinate system, EPSG:n");
+  command->add_option("--object", options->request.object,
+                      "Object of which the model is a survey; created if the project has none");
+  command->add_option("--survey", options->request.survey_date,
+                      "Date of the survey: YYYY, YYYY-MM or YYYY-MM-DD");
   command
       ->add_option("--resolution", options->request.resolution, "Default resolution of new layers")
       ->check(CLI::IsMember({2048, 4096, 8192, 16384}));

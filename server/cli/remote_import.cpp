@@ -171,6 +171,8 @@ std::string import_path(Client& client, const jobs::ImportRequest& request) {
   if (request.unit) add("unit", std::string(name(*request.unit)));
   add("up", request.up);
   add("crs", request.crs);
+  add("object", request.object);
+  add("survey_date", request.survey_date);
   if (request.resolution) add("resolution", std::to_string(request.resolution));
   if (request.weld_distance > 0) add("weld", (std::ostringstream() << request.weld_distance).str());
   if (request.strict) add("strict", "true");

@@ -51,6 +51,7 @@ std::vector<Id> ids_of(std::span<const std::int64_t> numbers) {
 
 using ProjectId = Id<struct ProjectTag>;
 using ModelId = Id<struct ModelTag>;
+using ObjectId = Id<struct ObjectTag>;  // objects with surveys
 using LayerId = Id<struct LayerTag>;
 using SurfaceImageId = Id<struct SurfaceImageTag>;
 using TableId = Id<struct TableTag>;

@@ -8,6 +8,7 @@
 
 #include "core/text/filename.h"
 #include "core/text/slug.h"
+#include "domain/scene/surveyed_object.h"
 #include "domain/scene/up.h"
 #include "jobs/model_geometry.h"
 #include "media/picture.h"
@@ -103,6 +104,10 @@ Result<void> check(const ImportRequest& request) {
   if (!request.crs.empty() && !is_crs(request.crs))
     return fail(ErrorCode::invalid, "Unknown coordinate system",
                 "Write a coordinate system as EPSG:n, for example EPSG:25830.", "crs");
+  if (request.object.size() > kMaxNameLength)
+    return fail(ErrorCode::invalid, "Name too long",
+                "The name of the object can be at most 200 bytes long.", "object");
+  STRATA_TRY(check_survey(!request.object.empty(), request.survey_date));
   if (!(request.weld_distance >= 0 && request.weld_distance < 1e15))
     return fail(ErrorCode::invalid, "Invalid distance",
                 "The welding distance must be 0 or a positive number.", "weld");
@@ -171,6 +176,8 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
     model.up = proposal.up;
   model.proposal = proposal;
   model.crs = request.crs;
+  fresh.object_name = request.object;
+  model.survey_date = request.survey_date;
   model.default_resolution = request.resolution == 0 ? kLowestResolution : request.resolution;
   model.atlas = atlas.report;
   model.repairs = loaded.repairs;

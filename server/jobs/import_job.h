@@ -28,6 +28,9 @@ struct ImportRequest {
   std::string up;  // one of kUpDirections; empty: from the file, or else z
   bool up_proposed = false;
   std::string crs;
+  // The name of the object of which the model is a survey, which is created if the project has none
+  // with this name, and the date of the survey. Both or neither is empty.
+  std::string object, survey_date;
   int resolution = 0;        // default resolution of new layers; 0: 2048
   double weld_distance = 0;  // joins vertices at a smaller distance; in the file's units
   bool strict = false;       // reject a file that needs repair

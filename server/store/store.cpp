@@ -32,6 +32,7 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options,
 
 Projects& Store::projects() { return impl_->projects; }
 Models& Store::models() { return impl_->models; }
+Objects& Store::objects() { return impl_->objects; }
 SurfaceImages& Store::surface_images() { return impl_->images; }
 Layers& Store::layers() { return impl_->layers; }
 Tables& Store::tables() { return impl_->tables; }

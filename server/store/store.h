@@ -30,6 +30,7 @@ class Members;
 class Models;
 class NamedParts;
 class Nodes;
+class Objects;
 class PersonalViews;
 class Projects;
 class Records;
@@ -76,6 +77,7 @@ class Store {
   // They exist as long as the store.
   Projects& projects();
   Models& models();
+  Objects& objects();  // objects with surveys
   SurfaceImages& surface_images();
   Layers& layers();
   Tables& tables();

@@ -12,6 +12,7 @@
 #include "store/content/layers.h"
 #include "store/content/models.h"
 #include "store/content/named_parts.h"
+#include "store/content/objects.h"
 #include "store/content/projects.h"
 #include "store/content/surface_images.h"
 #include "store/content/tools.h"
@@ -77,6 +78,12 @@ Result<NewToken> open_session(PgConnection& connection, const Person& person,
                               std::optional<std::chrono::seconds> lifetime,
                               const std::string& label);
 Result<void> lock_project(PgConnection& connection, ProjectId id);  // prevents its deletion
+// Returns the object with this name, ignoring case. Creates the object if the project has none.
+Result<ObjectId> object_named(PgConnection& connection, ProjectId project_id,
+                              const std::string& name);
+// Locks the object of the model. Returns an `invalid` error if the model's project does not have
+// the object, and a `conflict` error if the object has too many other models.
+Result<void> check_object(PgConnection& connection, const Model& model);
 Result<void> join_groups(PgConnection& connection, PersonId person_id,
                          const std::vector<GroupId>& groups);
 
@@ -129,6 +136,7 @@ struct Store::Impl {
   Audit audit{pool};
   Projects projects{pool};
   Models models{pool, blobs};
+  Objects objects{pool};
   SurfaceImages images{pool, blobs};
   Layers layers{pool};
   Tables tables{pool};

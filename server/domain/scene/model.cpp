@@ -173,6 +173,10 @@ nlohmann::json to_json(const Model& model, const std::string& project_slug) {
       {"credit", model.credit},
       {"source_download", name(model.source_download)},
       {"sequence", model.sequence}};
+  if (model.object) {
+    json["object"] = *model.object;
+    json["survey_date"] = model.survey_date;
+  }
   if (model.proposal) json["proposal"] = to_json(*model.proposal);
   if (model.open_edges) json["open_edges"] = to_json(*model.open_edges, model.metres());
   return json;

@@ -130,6 +130,10 @@ struct Model {
   int default_resolution = 2048;  // of new layers
   std::string inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri,
       credit;
+  // The object of which the model is a survey, and the date of the survey (domain/scene/
+  // surveyed_object.h). A model has both or neither.
+  std::optional<ObjectId> object;
+  std::string survey_date;
   std::int64_t sequence = 0;  // of the last journal entry
   std::int64_t version = 1;
 

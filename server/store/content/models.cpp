@@ -2,6 +2,7 @@
 
 #include "core/progress.h"
 #include "core/text/hex.h"
+#include "domain/scene/surveyed_object.h"
 #include "domain/scene/up.h"
 #include "store/content/models.h"
 #include "store/content/surface_image_rows.h"
@@ -18,7 +19,7 @@ constexpr auto kSelectModels = sql(
     "SELECT m.id, m.project_id, m.name, m.slug::text, m.unit, m.unit_assumed, m.scale_verified, m.up, m.north, m.crs, "
     "m.origin, m.bounds_min, m.bounds_max, m.triangles, m.vertices, m.area, m.atlas, m.repairs, m.default_resolution, "
     "m.inventory_number, m.owner, m.creator, m.captured, m.method, m.accuracy, m.processing, m.rights_uri, m.credit, "
-    "m.source_download, m.sequence, m.version, coalesce(m.proposal, 'null'), "
+    "m.source_download, m.object_id, m.survey_date, m.sequence, m.version, coalesce(m.proposal, 'null'), "
     "coalesce(m.open_edges, 'null'), "
     "(SELECT coalesce(jsonb_agg(jsonb_build_object('name', s.name, 'sha256', encode(s.sha256, 'hex'), 'bytes', b.bytes) "
     "ORDER BY s.position), '[]') FROM model_sources s JOIN blobs b USING (sha256) WHERE s.model_id = m.id) "
@@ -57,6 +58,8 @@ Model read_model(const PgResult& rows, int i) {
     *text = row.text();
   // An unknown role must not make the files downloadable for additional roles.
   m.source_download = parse_role(row.text()).value_or(Role::curator);
+  m.object = row.id<std::optional<ObjectId>>();
+  m.survey_date = row.text();
   m.sequence = row.integer();
   m.version = row.integer();
   m.proposal = scale_proposal_from_json(row.json());
@@ -87,7 +90,7 @@ Result<void> check(const Model& m) {
                       {&m.atlas.source, "atlas"}});
 }
 
-// Metadata that can be changed later: $1 name, $2 slug, … $20 source_download.
+// Metadata that can be changed later: $1 name, $2 slug, … $22 survey_date.
 Params metadata(const Model& m, const std::string& slug) {
   Params params;
   params.text(m.name)
@@ -109,7 +112,9 @@ Params metadata(const Model& m, const std::string& slug) {
       .text(m.processing)
       .text(m.rights_uri)
       .text(m.credit)
-      .text(name(m.source_download));
+      .text(name(m.source_download))
+      .optional_id(m.object)
+      .text(m.survey_date);
   return params;
 }
 
@@ -141,9 +146,10 @@ Result<PgResult> insert_model(PgConnection& connection, const Model& m, const st
   return connection.query(
       "INSERT INTO models (name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, "
       "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, "
-      "origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry, proposal, open_edges) "
+      "object_id, survey_date, origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry, proposal, "
+      "open_edges) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22, $23, $24, "
-      "$25, $26, $27, $28, $29, nullif($30, 'null'), nullif($31, 'null')) ON CONFLICT DO NOTHING RETURNING id",
+      "$25, $26, $27, $28, $29, $30, $31, nullif($32, 'null'), nullif($33, 'null')) ON CONFLICT DO NOTHING RETURNING id",
       params);
 }
 
@@ -169,6 +175,8 @@ Result<Model> model_by_id(PgConnection& connection, ModelId id) {
 Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>& cancelled,
                              const IdempotentResponse<Model>& answer) {
   STRATA_TRY(check(fresh.model));
+  STRATA_TRY(
+      check_survey(fresh.model.object || !fresh.object_name.empty(), fresh.model.survey_date));
   for (const auto& source : fresh.sources) {
     if (source.name.empty() || source.name.size() > kMaxNameLength)
       return fail(ErrorCode::malformed, "Invalid file name",
@@ -200,7 +208,10 @@ Result<Model> Models::create(const NewModel& fresh, const std::function<bool()>&
     std::sort(by_hash.begin(), by_hash.end(),
               [](const Content* a, const Content* b) { return a->hash < b->hash; });
     for (const Content* content : by_hash) STRATA_TRY(keep_blob(connection, *content, cancelled));
-    const Model& m = fresh.model;
+    Model m = fresh.model;
+    if (!fresh.object_name.empty())
+      m.object = STRATA_TRY(object_named(connection, m.project_id, fresh.object_name));
+    STRATA_TRY(check_object(connection, m));
     auto row = STRATA_TRY(insert_with_slug(
         connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
         m.slug.empty() ? m.name : m.slug,
@@ -255,12 +266,14 @@ Result<Model> Models::find(const std::string& ref) {
 
 Result<Model> Models::update(Model m, const IdempotentResponse<Model>& answer) {
   STRATA_TRY(check(m));
+  STRATA_TRY(check_survey(m.object.has_value(), m.survey_date));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Model> {
+    STRATA_TRY(check_object(connection, m));
     auto row = STRATA_TRY(connection.query(
         "UPDATE models SET name = $1, slug = $2, project_id = $3, unit = $4, unit_assumed = $5, scale_verified = $6, up = $7, "
         "north = $8, crs = $9, default_resolution = $10, inventory_number = $11, owner = $12, creator = $13, captured = $14, "
         "method = $15, accuracy = $16, processing = $17, rights_uri = $18, credit = $19, source_download = $20, "
-        "version = version + 1 WHERE id = $21 AND version = $22 RETURNING id",
+        "object_id = $21, survey_date = $22, version = version + 1 WHERE id = $23 AND version = $24 RETURNING id",
         metadata(m, m.slug).id(m.id).integer(m.version)));
     auto now = STRATA_TRY(model_by_id(connection, m.id));
     if (row.rows() == 0) return stale("model");

@@ -19,7 +19,10 @@ class Blobs;
 class Pool;
 
 struct NewModel {
-  Model model;                         // the model, with id 0; its slug is made unique
+  Model model;  // the model, with id 0; its slug is made unique
+  // The object of which the model is a survey, which is created if the project has no object with
+  // this name. Empty: `model.object`
+  std::string object_name{};
   std::vector<std::uint8_t> geometry;  // mesh::encode_geometry
   std::vector<std::vector<std::uint8_t>>
       detail_levels;  // from mesh::make_detail_levels, encoded in the same way, finest first

@@ -5,6 +5,7 @@
 
 #include "store/content/layers.h"
 #include "store/content/models.h"
+#include "store/content/objects.h"
 #include "store/content/projects.h"
 #include "store/journal/journal_reads.h"
 #include "store/tables/tables.h"
@@ -148,6 +149,8 @@ TEST(Models, every_field_comes_back) {
   m.processing = "p";
   m.rights_uri = "https://example.org/r";
   m.credit = "cr";
+  m.object = store->objects().create(1, "Vase").value().id;
+  m.survey_date = "2019-05";
   const auto made = store->models().create(fresh, {}).value();
   const auto read = store->models().find("vase-figures").value();
   EXPECT_EQ(made.id, read.id);

@@ -281,6 +281,11 @@ def lists_that_others_write(server, camera):
             delete("/tables"),
             by_id,
         ),
+        ("/projects/default/objects", "objects"): (
+            made("/projects/default/objects", lambda n: {"name": f"{names(n)}"}),
+            delete("/projects/default/objects"),
+            by_id,
+        ),
         (T + "/columns", "columns"): (
             lambda n: server.ok("POST", T + "/columns", {"name": names(n)}).json()["column"]["id"],
             delete(T + "/columns"),

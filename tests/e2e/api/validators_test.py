@@ -93,6 +93,7 @@ def make_site(server):
     ]
     server.ok("POST", f"/comments/{comment}/replies", {"text": "I did."})
     group = server.ok("POST", "/groups", {"name": "Students", "members": []}).json()["id"]
+    thing = server.ok("POST", "/projects/default/objects", {"name": "Sheet"}).json()["id"]
     job = server.ok(
         "POST", M + "/figures", {"format": "png", "dpi": 100}, headers={"Prefer": "respond-async"}
     ).json()["id"]
@@ -103,6 +104,7 @@ def make_site(server):
             "file": str(picture),
             "comment": str(comment),
             "group": str(group),
+            "object": str(thing),
             "job": str(job),
         }
     )

@@ -47,6 +47,7 @@ def make_site(server):
         },
     )
     server.ok("POST", M + "/snapshots", {"name": "First"})
+    OF_PATH["object"] = str(server.ok("POST", P + "/objects", {"name": "Sheet"}).json()["id"])
     OF_PATH["comment"] = str(
         server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()["id"]
     )
@@ -66,7 +67,7 @@ def versioned_changes(server):
                 asked = asked.replace("{" + name + "}", value)
             assert "{" not in asked, asked
             found.append((method.upper(), asked))
-    assert len(found) == 24, found
+    assert len(found) == 26, found
     return found
 
 
@@ -90,6 +91,11 @@ BODIES = {
 }
 
 
+def body_of(asked):
+    other = {"name": "Sheet"} if "/objects/" in asked else {"text": "Look!"}
+    return BODIES.get(asked, other)
+
+
 @pytest.fixture(scope="module")
 def changes(server):
     make_site(server)
@@ -100,7 +106,7 @@ def test_versions_are_not_demanded_at_first(server, changes):
     assert server.get(P).json()["require_if_match"] is False
     for method, asked in changes:
         if method == "PATCH":
-            server.ok(method, asked, BODIES.get(asked, {"text": "Look!"}))
+            server.ok(method, asked, body_of(asked))
 
 
 def test_a_project_may_demand_them(server):
@@ -113,7 +119,7 @@ def test_a_project_may_demand_them(server):
 
 def test_demanded(server, changes):
     for method, asked in changes:
-        body = BODIES.get(asked, {"text": "Look!"}) if method == "PATCH" else None
+        body = body_of(asked) if method == "PATCH" else None
         answer = server.request(method, asked, body)
         problem = answer.json()
         assert (

@@ -176,6 +176,7 @@ def sweep(server, secret, tour, files, thread):
         "format": "npy",
         "kiosk": "1",
         "group": "1",
+        "object": "1",
         "entry": "layer-1",
         "provider": "museum",
     }

@@ -172,6 +172,7 @@ def words(server, public):
         "template": ["1"],
         "user": ["owner"],
         "group": ["1"],
+        "object": ["1"],
         "entry": ["layer-1"],
         "session": ["1"],
         "token": ["1"],

@@ -39,6 +39,17 @@ TEST(ImportRequest, what_a_scan_may_be_asked_for_is_checked_without_its_bytes) {
   ImportRequest aside = good();
   aside.up = "w";
   EXPECT_EQ(refused_field(aside), "up");
+  ImportRequest survey = good();
+  survey.object = "Bust";
+  EXPECT_EQ(refused_field(survey), "survey_date");
+  survey.survey_date = "2019-13";
+  EXPECT_EQ(refused_field(survey), "survey_date");
+  survey.survey_date = "2019-12";
+  EXPECT_TRUE(check(survey));
+  survey.object.clear();
+  EXPECT_EQ(refused_field(survey), "object");
+  survey.object = std::string(201, 'n');
+  EXPECT_EQ(refused_field(survey), "object");
   ImportRequest long_name = good();
   long_name.name = std::string(201, 'n');
   EXPECT_EQ(refused_field(long_name), "name");

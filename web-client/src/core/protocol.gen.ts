@@ -695,6 +695,9 @@ export interface SourceFile {
   bytes: number;
 }
 
+/** Date of a survey. Year, month or day: 2019, 2019-05 or 2019-05-01. */
+export type SurveyDate = string;
+
 /** Model. */
 export interface Model {
   id: number;
@@ -735,6 +738,10 @@ export interface Model {
   credit: string;
   /** Lowest role that can download the files of the scan, the surface images in full size and the mesh. */
   source_download: "viewer" | "annotator" | "curator";
+  /** Id of the object of which the model is a survey. */
+  object?: number;
+  /** Date of the survey. Present if `object` is present. */
+  survey_date?: SurveyDate;
   /** Sequence of the last edit of the model. */
   sequence: number;
 }
@@ -1771,6 +1778,48 @@ export interface ModelPatch {
   credit?: string;
   /** Lowest role that can download the files of the scan, the surface images in full size and the mesh. */
   source_download?: "viewer" | "annotator" | "curator";
+  /** Id of an object of the model's project. Puts the model into the object. 0: takes the model out of its object, and clears `survey_date`. */
+  object?: number;
+  /** Date of the survey. Required for a model of an object. */
+  survey_date?: SurveyDate;
+}
+
+/** Survey: a model of an object. */
+export interface Survey {
+  /** Id of the model. */
+  model: number;
+  /** Slug of the model. */
+  slug: string;
+  /** Name of the model. */
+  name: string;
+  date: SurveyDate;
+}
+
+/** Name of an object. Unique in the project, ignoring case. */
+export type ObjectName = string;
+
+/** Object with its surveys. */
+export interface SurveyedObject {
+  id: number;
+  name: ObjectName;
+  /** Sorted by date. A year comes before its months, and a month before its days. Models in the Trash are not in the list. */
+  surveys: Survey[];
+}
+
+/** Objects of a project, sorted by id. */
+export interface ObjectList {
+  objects: SurveyedObject[];
+  total: number;
+}
+
+/** New object. */
+export interface ObjectCreate {
+  name: ObjectName;
+}
+
+/** New name of an object. */
+export interface ObjectPatch {
+  name: ObjectName;
 }
 
 /** File that a job created. The user who started the job can get the file from `/jobs/{job}/file`. The server keeps only the newest files. */

@@ -1873,6 +1873,48 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/projects/{project}/objects": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        /** List the objects of a project */
+        get: operations["list_objects"];
+        put?: never;
+        /** Create an object */
+        post: operations["create_object"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/projects/{project}/objects/{object}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                object: components["parameters"]["object"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        /** Get an object with its surveys */
+        get: operations["get_object"];
+        put?: never;
+        post?: never;
+        /** Delete an object */
+        delete: operations["delete_object"];
+        options?: never;
+        head?: never;
+        /** Rename an object */
+        patch: operations["change_object"];
+        trace?: never;
+    };
     "/projects/{project}/people": {
         parameters: {
             query?: never;
@@ -2733,6 +2775,14 @@ export interface components {
         ModuleLogLevel: wire.ModuleLogLevel;
         /** Model of a node */
         NodeModel: wire.NodeModel;
+        /** New object */
+        ObjectCreate: wire.ObjectCreate;
+        /** Objects of a project, sorted by id */
+        ObjectList: wire.ObjectList;
+        /** Name of an object */
+        ObjectName: wire.ObjectName;
+        /** New name of an object */
+        ObjectPatch: wire.ObjectPatch;
         /** Open edges: loops of edges that belong to only one triangle */
         OpenEdges: wire.OpenEdges;
         /** Outline of an area */
@@ -2956,6 +3006,12 @@ export interface components {
         SurfaceValue: wire.SurfaceValue;
         /** Values by the slugs of layers */
         SurfaceValues: wire.SurfaceValues;
+        /** Survey: a model of an object */
+        Survey: wire.Survey;
+        /** Date of a survey */
+        SurveyDate: wire.SurveyDate;
+        /** Object with its surveys */
+        SurveyedObject: wire.SurveyedObject;
         /** Table of a project */
         Table: wire.Table;
         /** Areas of records, in total and by model and layer */
@@ -3328,6 +3384,7 @@ export interface components {
         look: string;
         map_crs: string;
         model: string;
+        object: number;
         offset: number;
         project: string;
         provider: string;
@@ -4372,9 +4429,11 @@ export interface operations {
                 crs?: string;
                 filename?: string;
                 name?: string;
+                object?: string;
                 project?: string;
                 resolution?: components["schemas"]["Resolution"];
                 strict?: boolean;
+                survey_date?: components["schemas"]["SurveyDate"];
                 unit?: "mm" | "cm" | "m" | "proposed";
                 up?: "x" | "y" | "z" | "-x" | "-y" | "-z" | "proposed";
                 weld?: number;
@@ -7021,6 +7080,136 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+        };
+    };
+    list_objects: {
+        parameters: {
+            query?: {
+                after?: components["parameters"]["after"];
+                limit?: components["parameters"]["limit"];
+                offset?: components["parameters"]["offset"];
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ObjectList"];
+                };
+            };
+        };
+    };
+    create_object: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ObjectCreate"];
+            };
+        };
+        responses: {
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyedObject"];
+                };
+            };
+        };
+    };
+    get_object: {
+        parameters: {
+            query?: never;
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                object: components["parameters"]["object"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyedObject"];
+                };
+            };
+        };
+    };
+    delete_object: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+                "If-Match"?: components["parameters"]["if_match"];
+            };
+            path: {
+                object: components["parameters"]["object"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+        };
+    };
+    change_object: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+                "If-Match"?: components["parameters"]["if_match"];
+            };
+            path: {
+                object: components["parameters"]["object"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ObjectPatch"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SurveyedObject"];
+                };
             };
         };
     };

@@ -2409,6 +2409,8 @@ void read(const nlohmann::json& json, ModelPatch& value) {
   read_optional_member(json, "rights_uri", value.rights_uri);
   read_optional_member(json, "credit", value.credit);
   read_optional_member(json, "source_download", value.source_download);
+  read_optional_member(json, "object", value.object);
+  read_optional_member(json, "survey_date", value.survey_date);
 }
 
 nlohmann::json to_json(const ModelPatch& value) {
@@ -2430,6 +2432,28 @@ nlohmann::json to_json(const ModelPatch& value) {
   write_optional_member(json, "rights_uri", value.rights_uri);
   write_optional_member(json, "credit", value.credit);
   write_optional_member(json, "source_download", value.source_download);
+  write_optional_member(json, "object", value.object);
+  write_optional_member(json, "survey_date", value.survey_date);
+  return json;
+}
+
+void read(const nlohmann::json& json, ObjectCreate& value) {
+  read_member(json, "name", value.name);
+}
+
+nlohmann::json to_json(const ObjectCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  return json;
+}
+
+void read(const nlohmann::json& json, ObjectPatch& value) {
+  read_member(json, "name", value.name);
+}
+
+nlohmann::json to_json(const ObjectPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
   return json;
 }
 

@@ -115,6 +115,7 @@ enum class Schema {
   OpenEdges,
   SourceFile,
   Model,
+  SurveyDate,
   SurfaceValue,
   SurfaceValues,
   Role,
@@ -220,6 +221,12 @@ enum class Schema {
   ProjectPatch,
   ModelList,
   ModelPatch,
+  Survey,
+  SurveyedObject,
+  ObjectList,
+  ObjectName,
+  ObjectCreate,
+  ObjectPatch,
   Job,
   TransferReport,
   TransferredLayer,
@@ -367,7 +374,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 341;
+constexpr int kSchemaCount = 348;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1794,12 +1801,36 @@ struct ModelPatch {
   // Lowest role that can download the files of the scan, the surface images in full size and the
   // mesh.
   std::optional<ModelPatchSourceDownload> source_download;
+  // Id of an object of the model's project. Puts the model into the object. 0: takes the model out
+  // of its object, and clears `survey_date`.
+  std::optional<std::int64_t> object;
+  std::optional<std::string> survey_date;  // Date of the survey. Required for a model of an object.
   bool operator==(const ModelPatch&) const = default;
 };
 void read(const nlohmann::json& json, ModelPatch& value);
 nlohmann::json to_json(const ModelPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ModelPatch> = Schema::ModelPatch;
+
+// New object.
+struct ObjectCreate {
+  std::string name;
+  bool operator==(const ObjectCreate&) const = default;
+};
+void read(const nlohmann::json& json, ObjectCreate& value);
+nlohmann::json to_json(const ObjectCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<ObjectCreate> = Schema::ObjectCreate;
+
+// New name of an object.
+struct ObjectPatch {
+  std::string name;
+  bool operator==(const ObjectPatch&) const = default;
+};
+void read(const nlohmann::json& json, ObjectPatch& value);
+nlohmann::json to_json(const ObjectPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<ObjectPatch> = Schema::ObjectPatch;
 
 // File that a job created. The user who started the job can get the file from `/jobs/{job}/file`. The server keeps only the newest files.
 struct JobFile {

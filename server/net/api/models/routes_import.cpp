@@ -51,6 +51,8 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
     requested.up.clear();
   }
   requested.crs = request.query_or("crs", {});
+  requested.object = request.query_or("object", {});
+  requested.survey_date = request.query_or("survey_date", {});
   if (auto text = request.query_or("resolution", {}); !text.empty()) {
     auto resolution = STRATA_TRY(parse_integer(text, 1, INT32_MAX, "resolution"));
     requested.resolution = static_cast<int>(resolution);
@@ -156,8 +158,8 @@ void add_import_routes(Router& router, const RouteContext& context) {
          return start_import(context, *book, request);
        }),
        .role = Role::curator,
-       .query = {"name", "project", "unit", "up", "crs", "resolution", "filename", "weld",
-                 "strict"},
+       .query = {"name", "project", "unit", "up", "crs", "object", "survey_date", "resolution",
+                 "filename", "weld", "strict"},
        .project_in_query = true,
        .check = [&context](const Request& request) { return check_import(context, request); },
        .body = BodyKind::file,

@@ -84,6 +84,11 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
   set(model.processing, patch.processing);
   set(model.rights_uri, patch.rights_uri);
   set(model.credit, patch.credit);
+  if (patch.object) {
+    model.object = *patch.object > 0 ? std::optional(ObjectId(*patch.object)) : std::nullopt;
+    if (!model.object) model.survey_date.clear();
+  }
+  set(model.survey_date, patch.survey_date);
   if (patch.source_download)
     model.source_download = *parse_role(protocol::name(*patch.source_download));
   return {};

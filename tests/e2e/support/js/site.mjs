@@ -224,6 +224,8 @@ export class Site {
         value,
       });
     await this.#undo();
+    await server.json("POST", "/projects/site/objects", { name: "Wall" });
+    await server.json("PATCH", "/models/wall", { object: 1, survey_date: "2019-05-01" });
     await server.json("POST", "/models/wall/layers", {
       name: "Risk",
       expression: "if(cracks > 1, 2, 1) * moisture",
@@ -364,6 +366,8 @@ export class Site {
         return (
           await this.#post(`/tools?name=${encodeURIComponent(name)}`, "picture.png", "image/png")
         ).slug;
+      case "object":
+        return String((await server.json("POST", "/projects/site/objects", { name })).id);
       case "table":
         return (await server.json("POST", "/projects/site/tables", { name })).slug;
       case "column":
