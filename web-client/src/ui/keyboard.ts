@@ -25,6 +25,30 @@ export function arrowStep(key: string, at: number, count: number): number | null
   return step === undefined || count === 0 ? null : (at + step + count) % count;
 }
 
+const kShareStep = 0.02;
+
+/**
+ * Returns the value of a slider from 0 to 1 after a key. Returns null if the key does not move it.
+ */
+export function shareAfter(
+  { key, shiftKey }: Pick<KeyboardEvent, "key" | "shiftKey">,
+  share: number,
+): number | null {
+  const step = shiftKey ? 5 * kShareStep : kShareStep;
+  switch (key) {
+    case "ArrowLeft":
+      return Math.max(0, share - step);
+    case "ArrowRight":
+      return Math.min(1, share + step);
+    case "Home":
+      return 0;
+    case "End":
+      return 1;
+    default:
+      return null;
+  }
+}
+
 /** Returns the innermost focused element, or null. */
 export function hasKeyboard(): HTMLElement | null {
   let active = document.activeElement;

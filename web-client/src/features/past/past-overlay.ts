@@ -7,21 +7,19 @@ import { FrameCanvas } from "../../net/frame-canvas";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { toldTime } from "../../domain/times";
-import { icon } from "../../ui/icons";
 import { notices } from "../../ui/notices";
 import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
+import "../../ui/swipe-divider";
 import { texts } from "../../texts";
 
 const words = texts.past;
-const kKeyStep = 0.02;
 
 @customElement("strata-past-overlay")
 export class StrataPastOverlay extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @query("canvas") private _canvas!: HTMLCanvasElement | null;
   private _frames: FrameCanvas | null = null;
-  private _drags = false;
 
   constructor() {
     super();
@@ -76,41 +74,6 @@ export class StrataPastOverlay extends LitElement {
           top: 3.5rem; /* below the scale bar */
         }
       }
-      .divider {
-        position: absolute;
-        top: 0;
-        bottom: 0;
-        width: 2.75rem;
-        transform: translateX(-50%);
-        cursor: ew-resize;
-        pointer-events: auto;
-        touch-action: none;
-      }
-      .divider::before {
-        content: "";
-        position: absolute;
-        top: 0;
-        bottom: 0;
-        left: 50%;
-        width: 3px;
-        transform: translateX(-50%);
-        background: var(--mark-light);
-        box-shadow: 0 0 0 1px var(--mark-dark);
-      }
-      .divider span {
-        position: absolute;
-        top: 50%;
-        left: 50%;
-        display: grid;
-        place-items: center;
-        width: 2.25rem;
-        height: 2.25rem;
-        border-radius: 50%;
-        background: var(--accent);
-        color: var(--accent-ink);
-        transform: translate(-50%, -50%);
-        box-shadow: var(--shadow);
-      }
     `,
   ];
 
@@ -151,53 +114,15 @@ export class StrataPastOverlay extends LitElement {
         comparing
           ? html`<span class="label then ellipsis">${when}</span>
             <span class="label now ellipsis">${words.now}</span>
-            <div
-              class="divider"
-              role="slider"
-              tabindex="0"
-              aria-label=${words.divider}
-              aria-valuemin="0"
-              aria-valuemax="100"
-              aria-valuenow=${Math.round(share)}
-              ${styled({ left: `${share}%` })}
-              @pointerdown=${this.onDown}
-              @pointermove=${this.onMove}
-              @pointerup=${this.onUp}
-              @pointercancel=${this.onUp}
-              @keydown=${this.onKey}
-            >
-              <span>${icon("swipe")}</span>
-            </div>`
+            <strata-swipe-divider
+              label=${words.divider}
+              .share=${past.divider}
+              @divide=${({ detail }: CustomEvent<number>) => past.setDivider(detail)}
+            ></strata-swipe-divider>`
           : past.isActive
             ? html`<div class="frame"></div>
               <span class="label only ellipsis">${when}</span>`
             : nothing
       }`;
   }
-
-  private readonly onDown = (event: PointerEvent): void => {
-    if (event.button !== 0) return;
-    (event.currentTarget as HTMLElement).setPointerCapture(event.pointerId);
-    this._drags = true;
-    event.stopPropagation();
-  };
-  private readonly onMove = (event: PointerEvent): void => {
-    if (!this._drags) return;
-    const { left, width } = this.getBoundingClientRect();
-    if (width > 0) this.session.past.setDivider((event.clientX - left) / width);
-  };
-  private readonly onUp = (): void => {
-    this._drags = false;
-  };
-
-  private readonly onKey = (event: KeyboardEvent): void => {
-    const { past } = this.session;
-    const step = event.shiftKey ? 5 * kKeyStep : kKeyStep;
-    if (event.key === "ArrowLeft") past.setDivider(past.divider - step);
-    else if (event.key === "ArrowRight") past.setDivider(past.divider + step);
-    else if (event.key === "Home") past.setDivider(0);
-    else if (event.key === "End") past.setDivider(1);
-    else return;
-    event.preventDefault();
-  };
 }
