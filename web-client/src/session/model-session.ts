@@ -30,6 +30,7 @@ import type { PointerWatch } from "./pointer-watch";
 import type { RecordEditors } from "./record-editors";
 import type { RecordHover } from "../features/records/record-hover";
 import type { Reviews } from "../features/review/reviews";
+import type { Surveys } from "../features/surveys/surveys";
 import type { Tables } from "../features/tables/tables";
 import type { Together } from "../features/presence/together";
 import type { ToolShapes } from "../features/painting/tool-shapes";
@@ -65,6 +66,7 @@ export type SessionPart =
       | "hovered"
       | "together"
       | "views"
+      | "surveys"
       | "tours"
       | "tools"
     >;
@@ -103,6 +105,7 @@ export interface ModelSession {
   readonly together: Together;
   readonly cursors: PeopleCursors;
   readonly views: Views;
+  readonly surveys: Surveys;
   readonly tours: Tours;
   readonly figures: Figures;
   readonly face: FacePick;

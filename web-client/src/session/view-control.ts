@@ -42,6 +42,7 @@ export class ViewControl {
 
   private _hasModel = false;
   private _fitted = false;
+  private _first: Place | null = null; // the position of the first view; null for the default
   private _stillTimer: ReturnType<typeof setTimeout> | null = null;
   private _flight = 0; // id of requestAnimationFrame, or 0
   private _flightTo: Place | null = null;
@@ -73,6 +74,11 @@ export class ViewControl {
     this.camera.setModel(model.bounds, model.up);
     this.fitAtFirst();
     if (turned) this.moved(false);
+  }
+
+  /** Sets the position of the first view. Call this before `setModel`. */
+  beginAt(place: Place): void {
+    this._first = place;
   }
 
   /** Shows the model with another up direction without saving it. */
@@ -268,7 +274,8 @@ export class ViewControl {
   private fitAtFirst(): void {
     if (this._fitted || !this._hasModel || this.camera.width <= 1) return;
     this._fitted = true;
-    this.camera.firstView();
+    if (this._first) Object.assign(this.camera, this._first);
+    else this.camera.firstView();
     this.moved(false);
   }
 

@@ -13,7 +13,10 @@ import {
   formatSize,
   metresPer,
 } from "../domain/measure";
+import { toldSurveyDate } from "../domain/surveys";
 import { mayDownload, type Model, type Role } from "../core/types";
+import type { ModelSession } from "../session/model-session";
+import "../features/surveys/survey-fields";
 import "../ui/dialog";
 import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
@@ -38,6 +41,8 @@ export class StrataModelDetails extends LitElement {
    */
   @property({ type: Boolean }) correctable = false;
 
+  @property({ attribute: false }) session!: ModelSession;
+
   static override styles = [sharedStyles, detailStyles];
 
   override render(): TemplateResult {
@@ -61,6 +66,8 @@ export class StrataModelDetails extends LitElement {
       [words.owner, model.owner],
       [words.creator, model.creator],
       [words.captured, model.captured],
+      [texts.surveys.object, this.session.surveys.object?.name ?? ""],
+      [texts.surveys.date, model.survey_date ? toldSurveyDate(model.survey_date) : ""],
       [words.rights, model.rights_uri],
       [words.credit, model.credit],
       [words.open_edges, openEdgesText(model)],
@@ -92,7 +99,12 @@ export class StrataModelDetails extends LitElement {
             : nothing
         }
       </dl>
-      ${this.correctable ? this.downloadChoice() : nothing}
+      ${
+        this.correctable
+          ? html`<strata-survey-fields .session=${this.session} .model=${model}></strata-survey-fields>
+            ${this.downloadChoice()}`
+          : nothing
+      }
       ${
         this.correctable
           ? html`<button slot="actions" @click=${() => this.dispatchEvent(new CustomEvent("correct"))}>

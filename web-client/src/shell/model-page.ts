@@ -192,6 +192,7 @@ export class StrataModelPage extends LitElement {
         "activity",
         "appearance",
         "past",
+        "surveys",
       ],
     );
     session.subscribe(
@@ -334,6 +335,7 @@ export class StrataModelPage extends LitElement {
         <main>
           <strata-stage .session=${session}></strata-stage>
           ${session.past.isOpen && hasPart("past", this) ? html`<strata-past-overlay .session=${session}></strata-past-overlay>` : nothing}
+          ${this.surveys(session)}
           <strata-together-bar .session=${session}></strata-together-bar>
           <strata-comment-pins .session=${session}></strata-comment-pins>
           ${session.comments.card === null ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
@@ -428,6 +430,18 @@ export class StrataModelPage extends LitElement {
       </button>
       <strata-account-menu .me=${this.me} .kiosks=${seesToKiosks(this.me, this.projects)}></strata-account-menu>
     </header>`;
+  }
+
+  private surveys(session: OpenModelSession): TemplateResult | typeof nothing {
+    const { surveys, past } = session;
+    if (!surveys.object || !hasPart("surveys", this)) return nothing;
+    // Hidden, the overlay keeps its picture: the server sends a frame only after a change.
+    return html`${
+      surveys.other
+        ? html`<strata-survey-overlay .session=${session} ?hidden=${past.isActive}></strata-survey-overlay>`
+        : nothing
+    }
+      <strata-survey-bar .session=${session}></strata-survey-bar>`;
   }
 
   private history(session: OpenModelSession): TemplateResult | typeof nothing {

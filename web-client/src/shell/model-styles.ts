@@ -68,6 +68,7 @@ export const modelStyles = css`
     min-height: 0;
   }
   strata-stage,
+  strata-survey-overlay,
   strata-past-overlay {
     position: absolute;
     inset: 0 0 var(--past-height, 0) 0; /* above the history */

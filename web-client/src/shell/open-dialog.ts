@@ -129,6 +129,7 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
             .model=${session.model}
             .viewer=${session.role}
             .correctable=${session.canCurate}
+            .session=${session}
             @download-for=${(event: CustomEvent<Model["source_download"]>) => host.sayWhoDownloads(event.detail)}
             @closed=${closed}
             @correct=${() => host.show({ dialog: "scale" })}

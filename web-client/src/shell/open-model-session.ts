@@ -4,7 +4,8 @@
 // under the mouse pointer while the pointer does not move. `appearance` contains the surface
 // images, the light and the section. `pointer` contains the values under the pointer, `painting`
 // the brush and the edits. `together` contains the participants and the followed view, `cursors`
-// their pointers. `views` are the saved views, `tours` the tours, `measuring` the measurement, and
+// their pointers. `views` are the saved views, `surveys` the other surveys of the object,
+// `tours` the tours, `measuring` the measurement, and
 // `figures` the figures to scale. `face` is the face to pick, and `past` the earlier states.
 // Elements subscribe to the parts' state and render it. They change it only through methods. The
 // file is long because it is the only one that connects the parts.
@@ -52,6 +53,7 @@ import { RecordHover } from "../features/records/record-hover";
 import { RecordSight } from "../features/records/record-sight";
 import { Reviews } from "../features/review/reviews";
 import { forget, remember } from "../session/sessions";
+import { Surveys } from "../features/surveys/surveys";
 import { Tables } from "../features/tables/tables";
 import { texts } from "../texts";
 import { Together, type Shown } from "../features/presence/together";
@@ -97,6 +99,7 @@ export class OpenModelSession implements ModelSession {
   readonly together: Together;
   readonly cursors: PeopleCursors;
   readonly views: Views;
+  readonly surveys: Surveys;
   readonly tours: Tours;
   readonly figures: Figures;
   readonly face: FacePick;
@@ -139,6 +142,7 @@ export class OpenModelSession implements ModelSession {
         this.measuring.cameraMoved();
         this.lit.cameraMoved();
         this._connection.setCamera(this.view.camera.message(), moving);
+        this.surveys.other?.cameraMoved(moving);
       },
       whenFree: (action) => this.painting.whenFree(action),
       isPainting: () => this.painting.stroking,
@@ -159,15 +163,24 @@ export class OpenModelSession implements ModelSession {
     });
     this._model = new EditableModel(api, modelId, {
       view: this.view,
-      changed: () => this.changed(),
+      changed: () => {
+        this.surveys.modelChanged();
+        this.changed();
+      },
     });
     this.layers = new LayerList(api, modelId, {
       sendOverrides: (overrides) => this._connection.setLayerOverrides(overrides),
-      changed: () => this.targetChanged("layers"),
+      changed: () => {
+        this.surveys.other?.showLayers();
+        this.targetChanged("layers");
+      },
     });
     this.jobs = new LayerJobs(api, modelId, changes("jobs"));
     this.appearance = new Appearance(api, modelId, {
-      send: (looks, light) => this._connection.setAppearance(looks, light),
+      send: (looks, light) => {
+        this._connection.setAppearance(looks, light);
+        this.surveys.other?.showLight();
+      },
       sendSection: (planes, moving) => this.view.setSection(planes, moving),
       bounds: () => this.model?.bounds ?? null,
       changed: changes("appearance"),
@@ -313,6 +326,21 @@ export class OpenModelSession implements ModelSession {
       canCurate: () => this.canCurate,
       changed: changes("views"),
     });
+    this.surveys = new Surveys(
+      api,
+      {
+        model: () => this.model,
+        camera: () => this.view.camera,
+        place: () => this.view.place,
+        beginAt: (place) => this.view.beginAt(place),
+        seen: () => this.layers.seen,
+        show: (seen) => this.layers.showAlike(seen),
+        light: () => this.appearance.light,
+        setLight: (light) => this.appearance.setLight(light),
+        changed: changes("surveys"),
+      },
+      makeSocket,
+    );
     this.tours = new Tours(api, modelId, changes("tours"));
     this.figures = new Figures(api, this.jobs);
     this.face = new FacePick(api, {
@@ -387,6 +415,7 @@ export class OpenModelSession implements ModelSession {
   async open(): Promise<void> {
     const model = await this._model.read();
     if (this._closed) return;
+    this.surveys.begin(model.value);
     this._model.take(model);
     remember(this);
     this._connection.open();
@@ -409,6 +438,7 @@ export class OpenModelSession implements ModelSession {
     this.activity.close();
     this.reviews.close();
     this.past.stop();
+    this.surveys.close();
     this.visits.close();
     this.tables.close();
     this._signals.clear();
@@ -431,6 +461,7 @@ export class OpenModelSession implements ModelSession {
 
   checkConnection(): void {
     this._connection.check();
+    this.surveys.other?.checkConnection();
   }
 
   get canPaint(): boolean {
@@ -509,6 +540,7 @@ export class OpenModelSession implements ModelSession {
   /** Sets the background of the model. Null restores the server's default. */
   setBackground(background: Background | null): void {
     this._connection.setBackground(background);
+    this.surveys.setBackground(background);
   }
 
   frameDrawn(part: FrameMessage): void {
@@ -664,6 +696,7 @@ export class OpenModelSession implements ModelSession {
     this._model.put(message.model);
     this.layers.takeAll(message.layers.map(completeLayer), message.personal_view);
     this.appearance.takeLooks(message.looks);
+    this.surveys.welcome();
     this.shapes.refresh();
     this.tables.refresh();
     this.together.connected();

@@ -13,6 +13,7 @@ export type PagePart =
   | "measuring"
   | "activity"
   | "past"
+  | "surveys"
   | "join"
   | "sign_in"
   | "account"

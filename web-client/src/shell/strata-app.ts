@@ -65,6 +65,12 @@ setPartLoads({
       import("../features/past/step-list"),
     ]),
   ),
+  surveys: later(() =>
+    Promise.all([
+      import("../features/surveys/survey-bar"),
+      import("../features/surveys/survey-overlay"),
+    ]),
+  ),
   join: () => import("../features/account/join-page"),
   sign_in: () => import("../features/account/sign-in"),
   account: later(() => import("../features/account/account-dialog")),

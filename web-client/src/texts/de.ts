@@ -7,6 +7,7 @@
 //   record Datensatz · table Tabelle · column Spalte · key Schlüssel · term Begriff · list of terms Begriffsliste · template Vorlage
 //   area (of surface) Fläche · find Fund · context Befund · slope Neigung · facing Exposition · curvature Krümmung · roughness Rauheit
 //   comment Kommentar · reply Antwort · resolved erledigt · to lock sperren · to follow folgen · project Projekt · guest Gast
+//   object Objekt · survey Aufnahme
 //   hatch Schraffur · orthophoto Orthofoto · site (of a server) Server · invitation Einladung · token Token
 
 import { formatCount } from "../core/locale";
@@ -313,6 +314,15 @@ export const texts = {
     choose_file: "Datei auswählen",
     open: (name) => `${name} öffnen`,
     options: (name) => `Optionen für ${name}`,
+    surveys: (n) => count(n, "Aufnahme", "Aufnahmen"),
+    surveys_of: (name) => `Aufnahmen von ${name}`,
+    rename_object: "Umbenennen …",
+    rename_object_title: (name) => `„${name}“ umbenennen`,
+    object_name: "Name des Objekts",
+    delete_object: "Objekt löschen …",
+    delete_object_lead:
+      "Das Objekt wird gelöscht. Seine Modelle bleiben ohne Datum der Aufnahme erhalten.",
+    delete_survey: (date) => `Aufnahme von ${date} löschen`,
     delete_title: (name) => `„${name}“ löschen?`,
     delete_lead: "Der Scan wird mit allen Ebenen und deren Verlauf gelöscht.",
     deleted: (name) => `„${name}“ wurde gelöscht.`,
@@ -1314,6 +1324,8 @@ export const texts = {
       up: "Richtung nach oben",
       north: "Norden",
       crs: "Koordinatensystem",
+      object_id: "Objekt",
+      survey_date: "Datum der Aufnahme",
       project_id: "Projekt",
       other: "Angaben",
     },

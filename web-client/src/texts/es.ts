@@ -7,6 +7,7 @@
 //   record registro · table tabla · column columna · key clave · term término · list of terms lista de términos · template plantilla
 //   area (of surface) área · find hallazgo · context unidad estratigráfica · slope pendiente · facing orientación · curvature curvatura
 //   comment comentario · reply respuesta · resolved resuelto · to lock bloquear · to follow seguir · project proyecto · guest invitado · curator curador · role rol · tour recorrido
+//   object objeto · survey levantamiento
 //   roughness rugosidad · hatch rayado · orthophoto ortofoto · site (of a server) servidor · invitation invitación
 
 import { formatCount } from "../core/locale";
@@ -308,6 +309,15 @@ export const texts = {
     choose_file: "Elegir un archivo",
     open: (name) => `Abrir ${name}`,
     options: (name) => `Opciones de ${name}`,
+    surveys: (n) => count(n, "levantamiento", "levantamientos"),
+    surveys_of: (name) => `Levantamientos de ${name}`,
+    rename_object: "Cambiar nombre…",
+    rename_object_title: (name) => `Cambiar el nombre de «${name}»`,
+    object_name: "Nombre del objeto",
+    delete_object: "Eliminar el objeto…",
+    delete_object_lead:
+      "El objeto se elimina. Sus modelos se conservan, sin las fechas de sus levantamientos.",
+    delete_survey: (date) => `Eliminar el levantamiento de ${date}`,
     delete_title: (name) => `¿Eliminar «${name}»?`,
     delete_lead: "El escaneo se elimina con todas sus capas y el historial de estas.",
     deleted: (name) => `Se ha eliminado «${name}».`,
@@ -1302,6 +1312,8 @@ export const texts = {
       up: "eje vertical",
       north: "norte",
       crs: "sistema de coordenadas",
+      object_id: "objeto",
+      survey_date: "fecha del levantamiento",
       project_id: "proyecto",
       other: "detalles",
     },

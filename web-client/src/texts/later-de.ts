@@ -536,6 +536,24 @@ export const laterTexts = {
     cut: (n) =>
       `Es werden die ersten ${formatCount(n)} Zeilen und Spalten angezeigt. Kopien und Dateien enthalten alle.`,
   },
+  surveys: {
+    title: (object) => `Aufnahmen von ${object}`,
+    dates: "Datum der Aufnahme",
+    compare: "Mit anderer Aufnahme vergleichen",
+    alone: "Kein Vergleich",
+    beside: (date) => `Vergleich mit ${date}`,
+    divider: (left, right) => `Trennlinie zwischen ${left} und ${right}`,
+    loading: (date) => `Aufnahme von ${date} wird geladen …`,
+    object: "Objekt",
+    object_hint: "Zum Beispiel Büste der Nofretete",
+    date: "Datum der Aufnahme",
+    date_hint:
+      "Modelle eines Objekts sind Aufnahmen davon. Das Datum ist ein Jahr, ein Monat oder ein Tag: 2019, 2019-05 oder 2019-05-01. Ohne Objekt ist das Modell keine Aufnahme.",
+    date_needed: "Geben Sie das Datum der Aufnahme als 2019, 2019-05 oder 2019-05-01 ein.",
+    save: "Aufnahme speichern",
+    saved: (object, date) => `Als Aufnahme von ${object}, ${date}, gespeichert.`,
+    left: "Das Modell ist keine Aufnahme eines Objekts mehr.",
+  },
   column_filter: {
     title: (column) => `Nach ${column} filtern`,
     open: (column) => `Nach ${column} filtern`,

@@ -530,6 +530,24 @@ export const laterTexts = {
     cut: (n: number) =>
       `Showing the first ${formatCount(n)} rows and columns. Copies and files contain all.`,
   },
+  surveys: {
+    title: (object: string) => `Surveys of ${object}`,
+    dates: "Date of the survey",
+    compare: "Compare with another survey",
+    alone: "No comparison",
+    beside: (date: string) => `Compare with ${date}`,
+    divider: (left: string, right: string) => `Divider between ${left} and ${right}`,
+    loading: (date: string) => `Loading the survey of ${date}…`,
+    object: "Object",
+    object_hint: "For example, Nefertiti bust",
+    date: "Date of the survey",
+    date_hint:
+      "Models of one object are surveys of it. The date is a year, a month or a day: 2019, 2019-05 or 2019-05-01. Without an object, the model is not a survey.",
+    date_needed: "Enter the date of the survey as 2019, 2019-05 or 2019-05-01.",
+    save: "Save survey",
+    saved: (object: string, date: string) => `Saved as the survey of ${object}, ${date}.`,
+    left: "The model is no longer a survey of an object.",
+  },
   column_filter: {
     title: (column: string) => `Filter by ${column}`,
     open: (column: string) => `Filter by ${column}`,

@@ -531,6 +531,24 @@ export const laterTexts = {
     cut: (n) =>
       `Se muestran las primeras ${formatCount(n)} filas y columnas. Las copias y los archivos las contienen todas.`,
   },
+  surveys: {
+    title: (object) => `Levantamientos de ${object}`,
+    dates: "Fecha del levantamiento",
+    compare: "Comparar con otro levantamiento",
+    alone: "Sin comparación",
+    beside: (date) => `Comparar con ${date}`,
+    divider: (left, right) => `Divisor entre ${left} y ${right}`,
+    loading: (date) => `Cargando el levantamiento de ${date}…`,
+    object: "Objeto",
+    object_hint: "Por ejemplo, busto de Nefertiti",
+    date: "Fecha del levantamiento",
+    date_hint:
+      "Los modelos de un objeto son sus levantamientos. La fecha es un año, un mes o un día: 2019, 2019-05 o 2019-05-01. Sin objeto, el modelo no es un levantamiento.",
+    date_needed: "Introduzca la fecha del levantamiento como 2019, 2019-05 o 2019-05-01.",
+    save: "Guardar levantamiento",
+    saved: (object, date) => `Guardado como levantamiento de ${object}, ${date}.`,
+    left: "El modelo ya no es un levantamiento de un objeto.",
+  },
   column_filter: {
     title: (column) => `Filtrar por ${column}`,
     open: (column) => `Filtrar por ${column}`,

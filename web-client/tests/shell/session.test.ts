@@ -651,3 +651,39 @@ describe("how a person shows the layers", () => {
     ]);
   });
 });
+
+describe("another survey of the object", () => {
+  const surveyed = { ...model, project: "default", object: 7, survey_date: "2022" };
+  const survey = (id: number, date: string): object => ({
+    model: id,
+    slug: date,
+    name: date,
+    date,
+  });
+
+  it("is shown with the same camera and the layers of the same names, until the page closes", async () => {
+    answers.set("GET /api/v1/models/1", [200, surveyed]);
+    answers.set("GET /api/v1/projects/default/objects/7", [
+      200,
+      { id: 7, name: "Bust", surveys: [survey(2, "2019"), survey(1, "2022")] },
+    ]);
+    await session.open();
+    session.view.setViewport(800, 600, 1);
+    socket().open();
+    socket().receive({ ...welcome(), role: "owner", model: surveyed, layers: [layer(7, 0)] });
+    await settle();
+    session.surveys.compareWith(session.surveys.others[0]!);
+    const [own, other] = sockets as [FakeSocket, FakeSocket];
+    other.open();
+    const same = { ...layer(9, 0), name: "L7" };
+    other.receive({ ...welcome(), model: { ...surveyed, id: 2 }, layers: [same, layer(10, 1)] });
+    expect(other.of("layers").at(-1)!.layers).toEqual([{ layer: 9, visible: true, opacity: 1 }]);
+    session.layers.setVisible(session.layers.find(7)!, false);
+    expect(other.of("layers").at(-1)!.layers).toEqual([{ layer: 9, visible: false, opacity: 1 }]);
+    session.view.orbitPixels(40, 0);
+    await vi.advanceTimersByTimeAsync(50);
+    expect(other.of("camera").at(-1)!.view).toEqual(own.of("camera").at(-1)!.view);
+    session.close();
+    expect(other.closed).toBe(true);
+  });
+});

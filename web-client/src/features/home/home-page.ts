@@ -7,7 +7,8 @@ import { repeat } from "lit/directives/repeat.js";
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import { formatArea, formatSize, metresPer } from "../../domain/measure";
-import type { Project } from "../../core/protocol.gen";
+import { cardsOf, toldSurveyDate } from "../../domain/surveys";
+import type { Project, SurveyedObject } from "../../core/protocol.gen";
 import { mayAdminister, type Me, type Model } from "../../core/types";
 import { askAccount } from "../../ui/account-menu";
 import { askToTrash, tellTrashed } from "../../ui/trash";
@@ -21,6 +22,7 @@ import { hasKeyboard } from "../../ui/keyboard";
 import "../../ui/menu";
 import { notices } from "../../ui/notices";
 import "./project-card";
+import { deleteObject, renameObject } from "./object-actions";
 import { askProject } from "./project-dialog";
 import {
   curates,
@@ -56,6 +58,8 @@ export class StrataHomePage extends LitElement {
   /** The number of finished imports. A change reloads the list. */
   @property({ attribute: false }) imported = 0;
   @state() private _models: Model[] | null = null;
+  /** The objects of the listed models. */
+  @state() private _objects: readonly SurveyedObject[] = [];
   @state() private _problem = "";
   @query("h1") private _heading!: HTMLElement | null;
   @query("input[type=file]") private _fileInput!: HTMLInputElement;
@@ -75,6 +79,7 @@ export class StrataHomePage extends LitElement {
 
   override willUpdate(changed: PropertyValues<this>): void {
     if (changed.has("imported")) void this.load();
+    else if (changed.has("project") && this._models) void this.loadObjects(this._models);
     const { shown } = this;
     document.title = shown ? `${shown.name} – ${texts.product}` : texts.product;
   }
@@ -145,12 +150,37 @@ export class StrataHomePage extends LitElement {
 
   private async load(): Promise<void> {
     try {
-      this._models = await this.api.all("GET /models", "models");
+      const models = await this.api.all("GET /models", "models");
+      await this.loadObjects(models); // before the cards of the models appear
+      this._models = models;
       this._problem = "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
       else this._problem = error.message;
+    }
+  }
+
+  /** Reads the objects of the models on the page. The list of projects shows no models. */
+  private async loadObjects(models: readonly Model[]): Promise<void> {
+    const { project: shown } = this;
+    if (shown === null && listProjects(this.projects, models).length > 1) return;
+    const projects = new Set(
+      models
+        .filter(({ object, project }) => object !== undefined && (project === shown || !shown))
+        .map(({ project }) => project),
+    );
+    try {
+      const lists = await Promise.all(
+        [...projects].map((project) =>
+          this.api.all("GET /projects/{project}/objects", "objects", { path: { project } }),
+        ),
+      );
+      // Another project may be open by now.
+      if (shown === this.project) this._objects = lists.flat();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (shown === this.project) this._objects = []; // each model has its own card
     }
   }
 
@@ -260,9 +290,10 @@ export class StrataHomePage extends LitElement {
     if (this.hasNone) return this.nothingYet();
     return html`<ul class="gallery">
       ${repeat(
-        this.models,
-        (model) => model.id,
-        (model) => this.card(model),
+        cardsOf(this.models, this._objects),
+        (card) => ("object" in card ? `object ${card.object.id}` : card.model.id),
+        (card) =>
+          "object" in card ? this.objectCard(card.object, card.models) : this.card(card.model),
       )}
     </ul>`;
   }
@@ -338,6 +369,45 @@ export class StrataHomePage extends LitElement {
             <button class="quiet" role="menuitem" @click=${() => void this.deleteModel(model)}>
               ${icon("trash")}${texts.layers.delete}
             </button>
+          </strata-menu>`
+          : nothing
+      }
+    </li>`;
+  }
+
+  /** Renders an object with its surveys, the oldest first. The card opens the newest one. */
+  private objectCard(object: SurveyedObject, models: readonly Model[]): TemplateResult {
+    const words = texts.home;
+    const { name } = object;
+    const newest = models[models.length - 1]!;
+    const dateOf = (model: Model): string => toldSurveyDate(model.survey_date ?? "");
+    return html`<li>
+      <a href=${pathOfModel(newest.id)} aria-label=${words.open(name)} @click=${follow}>
+        <strata-thumbnail .api=${this.api} .model=${newest}></strata-thumbnail>
+        <div class="about">
+          <b class="ellipsis">${name}</b>
+          <span>${words.surveys(models.length)}</span>
+        </div>
+      </a>
+      <div class="dates" role="group" aria-label=${words.surveys_of(name)}>
+        ${models.map((model) => html`<a href=${pathOfModel(model.id)} title=${model.name} @click=${follow}>${dateOf(model)}</a>`)}
+      </div>
+      ${
+        this.curated.some(({ slug }) => slug === newest.project)
+          ? html`<strata-menu class="options" label=${words.options(name)} .quiet=${false}>
+            <button class="quiet" role="menuitem" @click=${() => void this.changeObject(() => renameObject(this.api, newest.project, object))}>
+              ${icon("edit")}${words.rename_object}
+            </button>
+            <button class="quiet" role="menuitem" @click=${() => void this.changeObject(() => deleteObject(this.api, newest.project, object))}>
+              ${icon("trash")}${words.delete_object}
+            </button>
+            <hr />
+            ${models.map(
+              (model) =>
+                html`<button class="quiet" role="menuitem" @click=${() => void this.deleteModel(model)}>
+                  ${icon("trash")}${words.delete_survey(dateOf(model))}
+                </button>`,
+            )}
           </strata-menu>`
           : nothing
       }
@@ -437,6 +507,11 @@ export class StrataHomePage extends LitElement {
 
   private async lookIntoTrash(project: Project): Promise<void> {
     if (await openTrash(this.api, project)) await this.load();
+  }
+
+  private async changeObject(change: () => Promise<void>): Promise<void> {
+    await change().catch((error: unknown) => notices.error(error));
+    await this.load();
   }
 
   private async deleteModel(model: Model): Promise<void> {

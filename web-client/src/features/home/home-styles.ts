@@ -159,6 +159,30 @@ export const homeStyles = css`
     border-color: var(--line-strong);
     box-shadow: var(--shadow);
   }
+  .dates {
+    display: flex;
+    flex-wrap: wrap;
+    gap: var(--space-1);
+    margin-top: var(--space-2);
+  }
+  .dates a {
+    padding: var(--space-half) var(--space-2);
+    border: var(--edge) solid var(--line);
+    border-radius: var(--radius-round);
+    color: inherit;
+    font-size: var(--text-small);
+    text-decoration: none;
+  }
+  .dates a:hover {
+    border-color: var(--line-strong);
+    text-decoration: underline;
+  }
+  @media (pointer: coarse) {
+    .dates a {
+      min-height: var(--control-touch);
+      align-content: center;
+    }
+  }
   .chip {
     justify-self: start;
     margin-top: var(--space-2);

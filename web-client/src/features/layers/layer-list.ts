@@ -4,6 +4,7 @@
 import { changeLayer } from "../../net/layers";
 import type { Api } from "../../net/api";
 import { samePalette } from "../../domain/palette";
+import { seenAlike, type LayersSeen } from "../../domain/surveys";
 import { layersOfView, layersToKeep, ownPart, type LayerShown } from "../../domain/views";
 import type { Highlight, LayerEvent, LayerOverride, PersonalView } from "../../core/protocol.gen";
 import { completeLayer, type Layer, type LayerPatch, type Palette } from "../../core/types";
@@ -86,6 +87,27 @@ export class LayerList {
   }
   setOpacity(layer: Layer, opacity: number): void {
     this.override([layer], { opacity });
+  }
+  /** How this user sees the layers, by their names. */
+  get seen(): LayersSeen {
+    return new Map(
+      this.all.map((layer) => [
+        layer.name,
+        { visible: this.visible(layer), opacity: this.opacity(layer) },
+      ]),
+    );
+  }
+  /** Shows the layers like the layers with the same names in another model. */
+  showAlike(seen: LayersSeen): void {
+    const changes = seenAlike(seen, this.all).filter(({ layer: id, visible, opacity }) => {
+      const layer = this.find(id)!;
+      return visible !== this.visible(layer) || opacity !== this.opacity(layer);
+    });
+    if (changes.length === 0) return;
+    for (const { layer, ...change } of changes)
+      for (const shown of [this._overrides, this._own])
+        shown.set(layer, { ...shown.get(layer), ...change });
+    this.changedByHand();
   }
   /** Shows a palette until the next call of setPalette. */
   previewPalette(layer: Layer, palette: Palette): void {

@@ -3,6 +3,7 @@ import { describe, expect, it, vi } from "vitest";
 import type { Api } from "../../../src/net/api";
 import type { Layer, LayerPatch } from "../../../src/core/types";
 import { presencePalette } from "../../../src/domain/palette";
+import { PersonalViewKeeper } from "../../../src/features/layers/personal-view";
 import { LayerList } from "../../../src/features/layers/layer-list";
 
 const red = presencePalette("x", "#ff0000ff");
@@ -22,6 +23,26 @@ function layerList(): { list: LayerList; changes: LayerPatch[]; cracks: Layer; p
   const [cracks, pieces] = list.all as [Layer, Layer];
   return { list, changes, cracks, pieces };
 }
+
+describe("layers that are shown like those of another model", () => {
+  it("are stored only if they differ from what the user sees", async () => {
+    const { list, cracks, pieces } = layerList();
+    const keep = vi.spyOn(PersonalViewKeeper.prototype, "keep").mockImplementation(() => {});
+    [cracks.name, pieces.name] = ["Cracks", "Pieces"];
+    list.showAlike(new Map([["Cracks", { visible: true, opacity: 1 }]]));
+    expect(keep).not.toHaveBeenCalled();
+    const hidden = { visible: false, opacity: 1 };
+    list.showAlike(
+      new Map([
+        ["Cracks", { visible: true, opacity: 1 }],
+        ["Pieces", hidden],
+      ]),
+    );
+    expect(keep).toHaveBeenCalledExactlyOnceWith({ layers: [{ layer: 2, visible: false }] });
+    expect([list.visible(cracks), list.visible(pieces)]).toEqual([true, false]);
+    keep.mockRestore();
+  });
+});
 
 describe("the default of the layers", () => {
   it("has the palettes that the user chose", async () => {
