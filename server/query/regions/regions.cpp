@@ -1,0 +1,91 @@
+#include "query/regions/regions.h"
+
+#include <bit>
+#include <string>
+
+#include "core/progress.h"
+#include "mesh/texels/texel_graph.h"
+#include "query/regions/texel_sets.h"
+
+namespace strata::query {
+namespace {
+
+constexpr std::uint32_t kSlotsAtOnce = 4096;  // between two checks whether the work is cancelled
+
+// Joins each texel of a slot to its connected texels with the same value.
+void join_slot(std::uint32_t slot, const SurfaceValues& values, const mesh::SurfaceMap& map,
+               const mesh::TexelGraph& graph, TexelSets& sets) {
+  using mesh::Way;
+  for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+    const std::uint32_t texel = slot * 64 + i;
+    const auto join = [&](std::uint32_t other) {
+      if (other != mesh::kNoNeighbour && values.same(texel, other)) sets.join(texel, other);
+    };
+    join(mesh::neighbour(map, graph, texel, Way::right));
+    join(mesh::neighbour(map, graph, texel, Way::upper));
+    if ((graph.has_links[slot] >> i & 1u) == 0) continue;
+    for (const auto& [from, to] : graph.links_of(texel))
+      if (to < texel) join(to);
+  }
+}
+
+}  // namespace
+
+Result<Regions> find_regions(const SurfaceValues& values, const mesh::SurfaceMap& map,
+                             const mesh::TexelGraph& graph, const Progress& progress) {
+  const auto slots = static_cast<std::uint32_t>(map.block_of_slot.size());
+  TexelSets sets(std::size_t{slots} * 64);
+  const auto for_each_slot = [&](auto&& visit) {
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      if (slot % kSlotsAtOnce == 0 && progress.cancelled()) return false;
+      if (!visit(slot)) return true;
+    }
+    return true;
+  };
+  const auto add = [&](std::uint32_t slot) {
+    for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1)
+      sets.add(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left)));
+    return true;
+  };
+  const auto join = [&](std::uint32_t slot) {
+    join_slot(slot, values, map, graph, sets);
+    return true;
+  };
+  if (!for_each_slot(add) || !for_each_slot(join)) return cancelled_problem();
+
+  // A parent is never higher than its texel. In ascending order, the parents of a texel already
+  // have the number of their region.
+  Regions regions{std::move(sets).take_parents(), {}};
+  const auto number = [&](std::uint32_t slot) {
+    for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+      const std::uint32_t texel = slot * 64 + i;
+      std::uint32_t& of = regions.of_texel[texel];
+      if (of == texel) {
+        if (regions.list.size() == kMaxRegions) return false;
+        of = static_cast<std::uint32_t>(regions.list.size());
+        regions.list.push_back({values.of(texel), false, texel, 0, 0});
+      } else {
+        of = regions.of_texel[of];
+      }
+      Region& region = regions.list[of];
+      ++region.texels;
+      region.area += map.area[texel];
+      region.at_open_edge |= (graph.at_open_edge[slot] >> i & 1u) != 0;
+    }
+    return true;
+  };
+  bool few = true;
+  if (!for_each_slot([&](std::uint32_t slot) { return few = number(slot); }))
+    return cancelled_problem();
+  if (!few)
+    return fail(ErrorCode::invalid, "Too many regions",
+                "The layer has more than " + std::to_string(kMaxRegions) +
+                    " regions. Such operations need a layer of classes or records. Copy the layer "
+                    "to classes with a computed layer first.",
+                "layer");
+  return regions;
+}
+
+}  // namespace strata::query
