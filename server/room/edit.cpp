@@ -38,6 +38,7 @@ std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit
     const auto keys = keys_in(import->tiles);
     return {keys.begin(), keys.end()};
   }
+  if (const auto* patch = std::get_if<PatchEdit>(&edit.edit)) return patch->keys;
   return {};
 }
 

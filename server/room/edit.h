@@ -18,6 +18,7 @@
 #include "domain/people/role.h"
 #include "domain/scene/stroke.h"
 #include "expression/expression.h"
+#include "query/regions/surface_values.h"
 #include "query/sampling/values.h"
 #include "room/edit_answer.h"
 #include "room/place.h"
@@ -67,6 +68,16 @@ struct ComputeEdit {
   std::vector<query::LayerView> shapes;
   bool overwrites = false;  // also replaces later edits by hand
 };
+// Changes of single texels that were computed from an earlier state of the layer, outside the
+// pipeline. Texels that were edited since then keep their newer values. If the layer has another
+// type or resolution by now, the edit is refused with a `conflict` error.
+struct PatchEdit {
+  query::TexelPatch patch;
+  ValueType type = ValueType::u8;  // of the layer at that time
+  int resolution = 0;
+  // The keys of a layer of records that the patch adds. Other keys were on the layer before.
+  std::vector<std::int64_t> keys{};
+};
 struct UndoEdit {};  // undoes the author's newest stroke in force on the layer
 struct RedoEdit {};
 struct ReviewEdit {  // reviews edits that wait for review, or that were reviewed before
@@ -83,8 +94,8 @@ struct EditRequest {
   Uuid id;  // id of the message; a repeated request gets the first result and paints nothing
   Author author;
   LayerId layer_id = 0;
-  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit,
-               RestoreEdit, ReviewEdit>
+  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, PatchEdit, UndoEdit,
+               RedoEdit, RestoreEdit, ReviewEdit>
       edit{};
   nlohmann::json record{};  // the requested edit, for the journal
   // The question that contains this edit, with its limits. Null: the limits of the author apply.

@@ -14,6 +14,7 @@ namespace strata::mesh {
 struct Geometry;
 class SearchTree;
 struct SurfaceMap;
+struct TexelGraph;
 }  // namespace strata::mesh
 
 namespace strata::room {
@@ -33,6 +34,8 @@ class Surface {
   virtual std::shared_ptr<const mesh::Geometry> geometry() const = 0;
   virtual std::shared_ptr<const mesh::SearchTree> search_tree() = 0;
   virtual Result<std::shared_ptr<const mesh::SurfaceMap>> map(int resolution) = 0;
+  // Returns the connections between the texels of the map of a resolution.
+  virtual Result<std::shared_ptr<const mesh::TexelGraph>> graph(int resolution) = 0;
   // The next two functions paint maps and measurements (query/maps) for an ImportEdit with `over`.
   // `point_splats` paints around the surface point nearest to each position. Returns an `invalid`
   // error if a surface point is farther away than `tolerance` (model units).

@@ -92,6 +92,11 @@ Result<std::shared_ptr<const mesh::SurfaceMap>> OpenRoom::SurfacePart::map(int r
   return room_.surface_map(resolution);
 }
 
+Result<std::shared_ptr<const mesh::TexelGraph>> OpenRoom::SurfacePart::graph(int resolution) {
+  const auto map = STRATA_TRY(room_.surface_map(resolution));
+  return room_.surface_lookup_->graph(*map);
+}
+
 std::shared_ptr<const mesh::Geometry> OpenRoom::SurfacePart::geometry() const {
   return room_.geometry_;
 }

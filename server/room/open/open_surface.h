@@ -14,6 +14,7 @@ class OpenRoom::SurfacePart final : public Surface {
   std::shared_ptr<const mesh::Geometry> geometry() const override;
   std::shared_ptr<const mesh::SearchTree> search_tree() override;
   Result<std::shared_ptr<const mesh::SurfaceMap>> map(int resolution) override;
+  Result<std::shared_ptr<const mesh::TexelGraph>> graph(int resolution) override;
   Result<TileMap> point_splats(const Layer& layer, const std::vector<PlacedValue>& values,
                                double radius, double tolerance) override;
   Result<TileMap> project(const Layer& layer, const glm::dvec3& direction,

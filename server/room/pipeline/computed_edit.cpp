@@ -138,6 +138,14 @@ Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer
             auto content = STRATA_TRY(computed_content(compute, layer, context));
             return only_changes(replace_content(tiles, content, layer.type, context.map));
           },
+          [&](const PatchEdit& patch) -> Result<ComputedEdit> {
+            if (patch.type != layer.type || patch.resolution != layer.resolution)
+              return fail(ErrorCode::conflict, "Layer was changed",
+                          "The type of the layer was changed while the result was computed. Start "
+                          "the operation again.",
+                          "layer");
+            return only_changes(patch_unchanged(tiles, patch.patch, layer.type));
+          },
           [&](const RestoreEdit& restore) -> Result<ComputedEdit> {
             auto past = STRATA_TRY(store.journal().load_tiles(layer, restore.sequence));
             auto changes = replace_content(tiles, past.tiles, layer.type, context.map);

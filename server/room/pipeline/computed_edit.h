@@ -10,8 +10,8 @@
 
 namespace strata::room {
 
-// An edit that is computed from mirrors and not painted by the GPU: fill, polygon, import, undo,
-// redo, restore, review.
+// An edit that is computed from mirrors and not painted by the GPU: fill, polygon, import, patch,
+// undo, redo, restore, review.
 struct ComputedEdit {
   std::vector<TileChange> changes;
   // Edits that are no longer in force, and edits that are in force again.

@@ -27,8 +27,9 @@ const char* op_name(const EditRequest& request) {
       Overloaded{
           [](const StrokeEdit&) { return "stroke"; }, [](const FillEdit&) { return "fill"; },
           [](const PolygonEdit&) { return "polygon"; }, [](const ImportEdit&) { return "import"; },
-          [](const ComputeEdit&) { return "compute"; }, [](const UndoEdit&) { return "undo"; },
-          [](const RedoEdit&) { return "redo"; }, [](const RestoreEdit&) { return "restore"; },
+          [](const ComputeEdit&) { return "compute"; }, [](const PatchEdit&) { return "cleanup"; },
+          [](const UndoEdit&) { return "undo"; }, [](const RedoEdit&) { return "redo"; },
+          [](const RestoreEdit&) { return "restore"; },
           [](const ReviewEdit& review) { return name(review.decision).data(); }},
       request.edit);
 }

@@ -140,6 +140,22 @@ std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written,
   return changes;
 }
 
+std::vector<TileChange> patch_unchanged(const TileMap& tiles, const query::TexelPatch& patch,
+                                        ValueType type) {
+  std::vector<TileChange> changes;
+  for (const auto& [address, tile] : patch.tiles) {
+    auto before = tile_or_empty(tiles, address, type);
+    const TileMask edited = differing(*before, *tile.before);
+    TileMask mask;
+    for (int w = 0; w < kMaskWords; ++w) mask.words[w] = tile.texels.words[w] & ~edited.words[w];
+    if (!mask.any()) continue;
+    auto after = std::make_shared<TileData>(*before);
+    copy_texels(*tile.after, mask, *after);
+    changes.push_back({address, std::move(before), std::move(after), mask});
+  }
+  return changes;
+}
+
 TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before,
                           const TileMask& written, const TileData& read_back) {
   auto after = std::make_shared<TileData>(*before);

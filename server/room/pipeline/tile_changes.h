@@ -10,6 +10,7 @@
 #include "domain/layers/tile_mirror.h"
 #include "mesh/texels/surface_map.h"
 #include "query/conditions/texel_selection.h"
+#include "query/regions/surface_values.h"
 #include "store/journal/journal.h"
 
 namespace strata::room {
@@ -66,6 +67,11 @@ std::vector<TileChange> only_within(std::vector<TileChange> changes,
 // surface.
 std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written, ValueType type,
                                    const mesh::SurfaceMap& map);
+
+// Writes the texels of the patch that still have the value from which it was computed. Texels with
+// another value stay as they are.
+std::vector<TileChange> patch_unchanged(const TileMap& tiles, const query::TexelPatch& patch,
+                                        ValueType type);
 
 // Returns the change of a tile by a stroke. The texels that the stroke wrote get the value from the
 // GPU. All other texels stay unchanged, regardless of the content on the GPU.

@@ -39,7 +39,8 @@ struct JournalEntry {
   Uuid id;                    // id of the message; unique per model
   std::string user;           // display name of the author
   Uuid stroke;                // groups the batches of one stroke; equal to `id` for single edits
-  // "stroke", "fill", "polygon", "import", "undo", "redo", "restore", "accept", "reject", "reopen"
+  // "stroke", "fill", "polygon", "import", "cleanup", "undo", "redo", "restore", "accept",
+  // "reject", "reopen"
   std::string op;
   nlohmann::json record;  // the edit as requested
   nlohmann::json answer;  // the response to the caller, also for a later request with the same `id`

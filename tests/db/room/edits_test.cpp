@@ -4,6 +4,7 @@
 #include <future>
 #include <thread>
 
+#include "domain/layers/mask_texels.h"
 #include "room/edit.h"
 #include "room/edits.h"
 #include "room/listener.h"
@@ -116,6 +117,54 @@ TEST_F(RoomTest, a_layer_is_restored_to_a_sequence_and_that_can_be_undone) {
   EXPECT_TRUE(test::equal(room()->queries().tiles("layer", 2)->tiles, second->tiles));
   ASSERT_TRUE(send(request(layer, room::UndoEdit{})));
   EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles, second->tiles));
+}
+
+// Sets all painted texels of a state to another value.
+room::PatchEdit repaint(const TileMap& tiles, std::uint32_t value) {
+  room::PatchEdit edit{{}, ValueType::u8, 2048};
+  for (const auto& [address, tile] : tiles) {
+    auto after = std::make_shared<TileData>(*tile);
+    for_each_texel(tile->valid, [&](int texel) { after->write(texel, value); });
+    edit.patch.tiles[address] = {tile->valid, tile, std::move(after)};
+  }
+  return edit;
+}
+
+TEST_F(RoomTest, a_patch_leaves_what_was_painted_since_and_can_be_undone) {
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 1, {{300, 240}}, 30, "anna")));
+  const auto then = room()->queries().statistics("layer")->texels;
+  const room::PatchEdit patch = repaint(room()->queries().tiles("layer", {})->tiles, 5);
+  // Ben paints over a part, and erases another part.
+  ASSERT_TRUE(send(stroke(layer, 2, {{320, 240}}, 15, "ben")));
+  auto erase = stroke(layer, 0, {{280, 240}}, 10, "ben");
+  std::get<room::StrokeEdit>(erase.edit).batch.erase = true;
+  ASSERT_TRUE(send(erase));
+  const auto before = room()->queries().tiles("layer", {});
+  const auto ben = room()->queries().statistics("layer");
+  const auto done = send(request(layer, patch, "anna"));
+  ASSERT_TRUE(done) << done.error().detail;
+  const auto after = room()->queries().statistics("layer");
+  EXPECT_EQ(done->texels_changed, ben->keys.at(1).texels);
+  EXPECT_LT(done->texels_changed, then);
+  EXPECT_EQ(after->keys.at(5).texels, ben->keys.at(1).texels);
+  EXPECT_EQ(after->keys.at(2).texels, ben->keys.at(2).texels);
+  EXPECT_FALSE(after->keys.contains(1));
+  EXPECT_EQ(after->texels, ben->texels);
+  restart();
+  ASSERT_TRUE(send(request(layer, room::UndoEdit{}, "anna")));
+  EXPECT_TRUE(test::equal(room()->queries().tiles("layer", {})->tiles, before->tiles));
+}
+
+TEST_F(RoomTest, a_patch_of_another_type_is_refused) {
+  const Layer layer = make_layer(ValueType::u8);
+  ASSERT_TRUE(send(stroke(layer, 1, {{300, 240}}, 30)));
+  room::PatchEdit patch = repaint(room()->queries().tiles("layer", {})->tiles, 5);
+  patch.type = ValueType::u16;
+  const auto refused = send(request(layer, patch));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::conflict);
+  EXPECT_EQ(room()->edits().sequence(), 1);
 }
 
 TEST_F(RoomTest, many_strokes_at_once_keep_their_order) {

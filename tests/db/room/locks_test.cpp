@@ -31,6 +31,19 @@ class LockedLayers : public RoomTest {
   }
 };
 
+// Returns a patch of a layer with these tiles.
+query::TexelPatch erase_one_texel(const TileMap& tiles) {
+  const auto& [address, tile] = *tiles.begin();
+  int texel = 0;
+  while (!tile->valid.test(texel)) ++texel;
+  auto erased = std::make_shared<TileData>(*tile);
+  erased->clear(texel);
+  query::TexelPatch patch;
+  patch.tiles[address] = {{}, tile, std::move(erased)};
+  patch.tiles[address].texels.set(texel);
+  return patch;
+}
+
 // Returns one edit of each kind. Each edit can change a layer on which Anna made two strokes and
 // undid one of them.
 std::vector<std::pair<std::string, decltype(room::EditRequest::edit)>> edits_of(
@@ -52,6 +65,7 @@ std::vector<std::pair<std::string, decltype(room::EditRequest::edit)>> edits_of(
           {"polygon", polygon},
           {"fill", fill},
           {"import", room::ImportEdit{other}},
+          {"patch", room::PatchEdit{erase_one_texel(other), ValueType::u8, 2048}},
           {"restore", room::RestoreEdit{0}}};
 }
 
