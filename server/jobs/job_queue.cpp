@@ -37,8 +37,8 @@ Error lost_problem(JobKind kind) {
     case JobKind::layers:
       return {ErrorCode::unavailable,
               kTitle,
-              "The server restarted before this job finished. The model may have hidden, "
-              "incomplete layers of this job. Delete them and start the job again.",
+              "The server restarted before this job finished. If the model has hidden, incomplete "
+              "layers of this job, delete them. Then start the job again.",
               {}};
     case JobKind::image:
       return {ErrorCode::unavailable,

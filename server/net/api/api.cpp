@@ -181,6 +181,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_frame_routes(router_, context_);
   add_figure_routes(router_, context_);
   add_texel_routes(router_, context_);
+  add_cleanup_routes(router_, context_);
   add_shape_routes(router_, context_);
   add_map_routes(router_, context_);
   add_orthophoto_routes(router_, context_);

@@ -49,6 +49,7 @@ void add_timeline_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);
 void add_figure_routes(Router& router, const RouteContext& context);
 void add_texel_routes(Router& router, const RouteContext& context);
+void add_cleanup_routes(Router& router, const RouteContext& context);
 void add_shape_routes(Router& router, const RouteContext& context);
 void add_map_routes(Router& router, const RouteContext& context);
 void add_orthophoto_routes(Router& router, const RouteContext& context);

@@ -16,7 +16,9 @@ nlohmann::json to_json(const jobs::JobStatus& job) {
   json["model"] = job.result->model;
   if (!job.result->layers.empty()) json["layers"] = job.result->layers;
   if (job.result->image) json["look"] = *job.result->image;
-  if (!job.result->report.is_null()) json["report"] = job.result->report;
+  // The report of a clean-up names its operation.
+  if (const auto& report = job.result->report; !report.is_null())
+    json[report.contains("operation") ? "cleanup" : "report"] = report;
   if (const auto& file = job.result->file)
     json["file"] = {{"name", file->name}, {"media_type", file->media_type}, {"bytes", file->bytes}};
   return json;

@@ -1822,6 +1822,30 @@ export interface ObjectPatch {
   name: ObjectName;
 }
 
+/** Operation on the regions of a layer. */
+export type RegionOperation = "sieve" | "fill-holes" | "majority" | "border" | "pieces";
+
+/** Result of an operation on the regions of a layer. */
+export interface CleanupReport {
+  operation: RegionOperation;
+  /** false: this was a preview, or there was nothing to change. */
+  applied: boolean;
+  /** Number of regions that change: for sieve and fill-holes, the regions with a new value; for pieces, the new records. 0 for majority and border. */
+  regions: number;
+  /** Number of texels that change. In a preview, the number that would change. */
+  texels: number;
+  /** Area of these texels. */
+  area_m2: number;
+  /** Number of texels that stay as they are, because they were edited while the result was computed. */
+  skipped_texels?: number;
+  /** Sequence of the edit. Absent if there was no edit. */
+  sequence?: number;
+  /** true: the edit waits for review. */
+  provisional?: boolean;
+  /** For pieces: the keys of the new records, the largest piece first. */
+  keys?: number[];
+}
+
 /** File that a job created. The user who started the job can get the file from `/jobs/{job}/file`. The server keeps only the newest files. */
 export interface JobFile {
   name: string;
@@ -1874,7 +1898,52 @@ export interface Job {
   /** Id of the surface image that the job created on the model. */
   look?: number;
   report?: TransferReport;
+  cleanup?: CleanupReport;
   file?: JobFile;
+}
+
+/** Clean-up of the regions of a layer. */
+export interface Cleanup {
+  /** sieve: regions smaller than `area_cm2` get the value of the neighbor with the longest common border. fill-holes: regions without a value that are smaller than `area_cm2` and enclosed by one value get this value. majority: each texel gets the value with the largest area within `radius_mm`. border: the border of regions is painted as a line that is `width_mm` wide. */
+  operation: "sieve" | "fill-holes" | "majority" | "border";
+  /** For sieve and fill-holes: regions of this area or larger stay unchanged. */
+  area_cm2?: number;
+  /** For sieve: true: small regions become unpainted instead. Default: false. */
+  erase_regions?: boolean;
+  /** For majority: at most 40 texels of the layer (422). */
+  radius_mm?: number;
+  /** For border: the width of the line. The line is at least one texel wide. */
+  width_mm?: number;
+  /** For border: the layer with the regions, with the same resolution. Default: the layer itself. */
+  from?: LayerRef;
+  /** For border: the value of the regions. Default: the borders between all values. */
+  of?: number;
+  /** For border with `of`: true: the line lies completely inside the regions. false: half of it lies on each side. Default: false. */
+  inside?: boolean;
+  /** For border: the value of the line. */
+  value?: number;
+  /** For border: true: erase along the line. Default: false. */
+  erase?: boolean;
+  /** false: only count what would change. Default: true. */
+  apply?: boolean;
+}
+
+/** Records of the pieces of a class. */
+export interface PieceRecords {
+  /** The layer of records, on the same model and with the same resolution. Its table gets the records, and the layer gets their keys. */
+  into: LayerRef;
+  /** The value of the pieces. Default: all values. */
+  of?: number;
+  /** Smaller pieces get no record. Default: 0. */
+  min_area_cm2?: number;
+  /** Slug of a column for the number of the piece, from 1. The largest piece is 1. */
+  number_column?: string;
+  /** Slug of a column for the area in cm². */
+  area_column?: string;
+  /** Slug of a column for the perimeter in mm. */
+  perimeter_column?: string;
+  /** false: only count the pieces. Default: true. */
+  apply?: boolean;
 }
 
 /** Transfer of layers from another version of the same scan. */
@@ -2802,7 +2871,7 @@ export interface WaitingStroke {
   full_name?: string;
   /** Color of `user`. */
   color?: PersonColor;
-  op: "stroke" | "fill" | "polygon" | "import" | "restore";
+  op: "stroke" | "fill" | "polygon" | "import" | "cleanup" | "restore";
   /** In UTC (RFC 3339). */
   begun: string;
   /** Time of its last batch. */
@@ -2864,7 +2933,7 @@ export interface HistoryEntry {
   /** In UTC (RFC 3339). */
   time: string;
   /** checkpoint: the edits of a period, after an administrator has thinned the history. */
-  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen" | "checkpoint";
+  op: "stroke" | "fill" | "polygon" | "import" | "cleanup" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen" | "checkpoint";
   /** false while the edit is undone or rejected. */
   in_force?: boolean;
   review?: ReviewState;
@@ -2981,7 +3050,7 @@ export interface TimelineStep {
   /** Color of `user`. */
   color?: PersonColor;
   /** checkpoint: the edits of a period, after an administrator has thinned the history. */
-  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen" | "checkpoint";
+  op: "stroke" | "fill" | "polygon" | "import" | "cleanup" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen" | "checkpoint";
   /** Time of its last batch, or of the state `last`. */
   time: string;
   /** Number of texels that its batches changed. A texel counts once for each batch that changed it. */
@@ -3354,7 +3423,7 @@ export interface UndoStep {
   last: number;
   stroke: string;
   layer: number;
-  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "restore";
+  op: "stroke" | "fill" | "polygon" | "import" | "cleanup" | "compute" | "restore";
   /** Time of its last batch. */
   time: string;
   /** Number of texels that its batches changed. A texel counts once for each batch that changed it. */

@@ -676,6 +676,26 @@ export interface paths {
         patch: operations["change_layer"];
         trace?: never;
     };
+    "/models/{model}/layers/{layer}/cleanup": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layer: components["parameters"]["layer"];
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Clean up the regions of a layer */
+        post: operations["clean_up_layer"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/layers/{layer}/compute": {
         parameters: {
             query?: never;
@@ -791,6 +811,26 @@ export interface paths {
         put?: never;
         /** Paint a layer from a map image */
         post: operations["paint_picture"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/layers/{layer}/piece-records": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layer: components["parameters"]["layer"];
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Create a record for each piece of a class */
+        post: operations["create_piece_records"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2535,6 +2575,10 @@ export interface components {
         ChangedCells: wire.ChangedCells;
         /** Changed property */
         ChangedProperty: wire.ChangedProperty;
+        /** Clean-up of the regions of a layer */
+        Cleanup: wire.Cleanup;
+        /** Result of an operation on the regions of a layer */
+        CleanupReport: wire.CleanupReport;
         /** Column of a table */
         Column: wire.Column;
         /** Column after a change */
@@ -2816,6 +2860,8 @@ export interface components {
         PersonState: wire.PersonState;
         /** Values at a pixel */
         PickRequest: wire.PickRequest;
+        /** Records of the pieces of a class */
+        PieceRecords: wire.PieceRecords;
         /** Plane in space */
         Plane: wire.Plane;
         /** Pixel in the window of a camera, or texture coordinate */
@@ -2886,6 +2932,11 @@ export interface components {
         RecordsCreate: wire.RecordsCreate;
         /** Result of an import of records */
         RecordsReport: wire.RecordsReport;
+        /**
+         * Operation on the regions of a layer
+         * @enum {string}
+         */
+        RegionOperation: wire.RegionOperation;
         /** Repair during the import */
         Repair: wire.Repair;
         /** Reply in a comment thread */
@@ -4851,6 +4902,34 @@ export interface operations {
             };
         };
     };
+    clean_up_layer: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                layer: components["parameters"]["layer"];
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Cleanup"];
+            };
+        };
+        responses: {
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
+                };
+            };
+        };
+    };
     compute_layer: {
         parameters: {
             query?: {
@@ -5038,6 +5117,34 @@ export interface operations {
         };
         responses: {
             200: components["responses"]["Edited"];
+        };
+    };
+    create_piece_records: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                layer: components["parameters"]["layer"];
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PieceRecords"];
+            };
+        };
+        responses: {
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
+                };
+            };
         };
     };
     paint_polygons: {

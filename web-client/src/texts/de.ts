@@ -1135,6 +1135,7 @@ export const texts = {
       fill: "Füllung",
       polygon: "Umriss",
       import: "importierte Daten",
+      cleanup: "bereinigte Gebiete",
       restore: "wiederhergestellter Stand",
     },
     done: {
@@ -1162,6 +1163,7 @@ export const texts = {
       fill: "Gefüllt",
       polygon: "Umrissen",
       import: "Importiert",
+      cleanup: "Bereinigt",
       compute: "Berechnet",
       restore: "Wiederhergestellt",
     },

@@ -1094,6 +1094,7 @@ export const texts = {
       fill: "fill",
       polygon: "outline",
       import: "imported data",
+      cleanup: "cleaned-up regions",
       restore: "restored state",
     },
     done: {
@@ -1122,6 +1123,7 @@ export const texts = {
       fill: "Filled",
       polygon: "Outlined",
       import: "Imported",
+      cleanup: "Cleaned up",
       compute: "Computed",
       restore: "Restored",
     },

@@ -1124,6 +1124,7 @@ export const texts = {
       fill: "relleno",
       polygon: "contorno",
       import: "datos importados",
+      cleanup: "regiones depuradas",
       restore: "estado restaurado",
     },
     done: {
@@ -1151,6 +1152,7 @@ export const texts = {
       fill: "Rellenado",
       polygon: "Contorno",
       import: "Importado",
+      cleanup: "Depurado",
       compute: "Calculado",
       restore: "Restaurado",
     },

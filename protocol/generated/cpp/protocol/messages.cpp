@@ -737,6 +737,28 @@ void read(const nlohmann::json& json, ModelPatchSourceDownload& value) {
 
 nlohmann::json to_json(const ModelPatchSourceDownload& value) { return name(value); }
 
+std::string_view name(RegionOperation value) {
+  switch (value) {
+    case RegionOperation::sieve: return "sieve";
+    case RegionOperation::fill_holes: return "fill-holes";
+    case RegionOperation::majority: return "majority";
+    case RegionOperation::border: return "border";
+    case RegionOperation::pieces: return "pieces";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, RegionOperation& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "sieve") value = RegionOperation::sieve;
+  if (text == "fill-holes") value = RegionOperation::fill_holes;
+  if (text == "majority") value = RegionOperation::majority;
+  if (text == "border") value = RegionOperation::border;
+  if (text == "pieces") value = RegionOperation::pieces;
+}
+
+nlohmann::json to_json(const RegionOperation& value) { return name(value); }
+
 std::string_view name(JobState value) {
   switch (value) {
     case JobState::queued: return "queued";
@@ -758,6 +780,26 @@ void read(const nlohmann::json& json, JobState& value) {
 }
 
 nlohmann::json to_json(const JobState& value) { return name(value); }
+
+std::string_view name(CleanupOperation value) {
+  switch (value) {
+    case CleanupOperation::sieve: return "sieve";
+    case CleanupOperation::fill_holes: return "fill-holes";
+    case CleanupOperation::majority: return "majority";
+    case CleanupOperation::border: return "border";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, CleanupOperation& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "sieve") value = CleanupOperation::sieve;
+  if (text == "fill-holes") value = CleanupOperation::fill_holes;
+  if (text == "majority") value = CleanupOperation::majority;
+  if (text == "border") value = CleanupOperation::border;
+}
+
+nlohmann::json to_json(const CleanupOperation& value) { return name(value); }
 
 std::string_view name(TemplateTermPattern value) {
   switch (value) {
@@ -857,6 +899,7 @@ std::string_view name(WaitingStrokeOp value) {
     case WaitingStrokeOp::fill: return "fill";
     case WaitingStrokeOp::polygon: return "polygon";
     case WaitingStrokeOp::import: return "import";
+    case WaitingStrokeOp::cleanup: return "cleanup";
     case WaitingStrokeOp::restore: return "restore";
   }
   return {};
@@ -868,6 +911,7 @@ void read(const nlohmann::json& json, WaitingStrokeOp& value) {
   if (text == "fill") value = WaitingStrokeOp::fill;
   if (text == "polygon") value = WaitingStrokeOp::polygon;
   if (text == "import") value = WaitingStrokeOp::import;
+  if (text == "cleanup") value = WaitingStrokeOp::cleanup;
   if (text == "restore") value = WaitingStrokeOp::restore;
 }
 
@@ -879,6 +923,7 @@ std::string_view name(HistoryEntryOp value) {
     case HistoryEntryOp::fill: return "fill";
     case HistoryEntryOp::polygon: return "polygon";
     case HistoryEntryOp::import: return "import";
+    case HistoryEntryOp::cleanup: return "cleanup";
     case HistoryEntryOp::compute: return "compute";
     case HistoryEntryOp::undo: return "undo";
     case HistoryEntryOp::redo: return "redo";
@@ -897,6 +942,7 @@ void read(const nlohmann::json& json, HistoryEntryOp& value) {
   if (text == "fill") value = HistoryEntryOp::fill;
   if (text == "polygon") value = HistoryEntryOp::polygon;
   if (text == "import") value = HistoryEntryOp::import;
+  if (text == "cleanup") value = HistoryEntryOp::cleanup;
   if (text == "compute") value = HistoryEntryOp::compute;
   if (text == "undo") value = HistoryEntryOp::undo;
   if (text == "redo") value = HistoryEntryOp::redo;
@@ -2457,6 +2503,32 @@ nlohmann::json to_json(const ObjectPatch& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, CleanupReport& value) {
+  read_member(json, "operation", value.operation);
+  read_member(json, "applied", value.applied);
+  read_member(json, "regions", value.regions);
+  read_member(json, "texels", value.texels);
+  read_member(json, "area_m2", value.area_m2);
+  read_optional_member(json, "skipped_texels", value.skipped_texels);
+  read_optional_member(json, "sequence", value.sequence);
+  read_optional_member(json, "provisional", value.provisional);
+  read_optional_member(json, "keys", value.keys);
+}
+
+nlohmann::json to_json(const CleanupReport& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "operation", value.operation);
+  write_member(json, "applied", value.applied);
+  write_member(json, "regions", value.regions);
+  write_member(json, "texels", value.texels);
+  write_member(json, "area_m2", value.area_m2);
+  write_optional_member(json, "skipped_texels", value.skipped_texels);
+  write_optional_member(json, "sequence", value.sequence);
+  write_optional_member(json, "provisional", value.provisional);
+  write_optional_member(json, "keys", value.keys);
+  return json;
+}
+
 void read(const nlohmann::json& json, JobFile& value) {
   read_member(json, "name", value.name);
   read_member(json, "media_type", value.media_type);
@@ -2521,6 +2593,7 @@ void read(const nlohmann::json& json, Job& value) {
   read_optional_member(json, "layers", value.layers);
   read_optional_member(json, "look", value.look);
   read_optional_member(json, "report", value.report);
+  read_optional_member(json, "cleanup", value.cleanup);
   read_optional_member(json, "file", value.file);
 }
 
@@ -2535,7 +2608,60 @@ nlohmann::json to_json(const Job& value) {
   write_optional_member(json, "layers", value.layers);
   write_optional_member(json, "look", value.look);
   write_optional_member(json, "report", value.report);
+  write_optional_member(json, "cleanup", value.cleanup);
   write_optional_member(json, "file", value.file);
+  return json;
+}
+
+void read(const nlohmann::json& json, Cleanup& value) {
+  read_member(json, "operation", value.operation);
+  read_optional_member(json, "area_cm2", value.area_cm2);
+  read_optional_member(json, "erase_regions", value.erase_regions);
+  read_optional_member(json, "radius_mm", value.radius_mm);
+  read_optional_member(json, "width_mm", value.width_mm);
+  read_optional_member(json, "from", value.from);
+  read_optional_member(json, "of", value.of);
+  read_optional_member(json, "inside", value.inside);
+  read_optional_member(json, "value", value.value);
+  read_optional_member(json, "erase", value.erase);
+  read_optional_member(json, "apply", value.apply);
+}
+
+nlohmann::json to_json(const Cleanup& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "operation", value.operation);
+  write_optional_member(json, "area_cm2", value.area_cm2);
+  write_member(json, "erase_regions", value.erase_regions);
+  write_optional_member(json, "radius_mm", value.radius_mm);
+  write_optional_member(json, "width_mm", value.width_mm);
+  write_optional_member(json, "from", value.from);
+  write_optional_member(json, "of", value.of);
+  write_member(json, "inside", value.inside);
+  write_optional_member(json, "value", value.value);
+  write_member(json, "erase", value.erase);
+  write_member(json, "apply", value.apply);
+  return json;
+}
+
+void read(const nlohmann::json& json, PieceRecords& value) {
+  read_member(json, "into", value.into);
+  read_optional_member(json, "of", value.of);
+  read_optional_member(json, "min_area_cm2", value.min_area_cm2);
+  read_optional_member(json, "number_column", value.number_column);
+  read_optional_member(json, "area_column", value.area_column);
+  read_optional_member(json, "perimeter_column", value.perimeter_column);
+  read_optional_member(json, "apply", value.apply);
+}
+
+nlohmann::json to_json(const PieceRecords& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "into", value.into);
+  write_optional_member(json, "of", value.of);
+  write_member(json, "min_area_cm2", value.min_area_cm2);
+  write_optional_member(json, "number_column", value.number_column);
+  write_optional_member(json, "area_column", value.area_column);
+  write_optional_member(json, "perimeter_column", value.perimeter_column);
+  write_member(json, "apply", value.apply);
   return json;
 }
 

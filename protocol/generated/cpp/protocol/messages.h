@@ -228,6 +228,10 @@ enum class Schema {
   ObjectCreate,
   ObjectPatch,
   Job,
+  RegionOperation,
+  CleanupReport,
+  Cleanup,
+  PieceRecords,
   TransferReport,
   TransferredLayer,
   Transfer,
@@ -374,7 +378,7 @@ enum class Schema {
   SnapshotPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 348;
+constexpr int kSchemaCount = 352;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1832,6 +1836,35 @@ nlohmann::json to_json(const ObjectPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ObjectPatch> = Schema::ObjectPatch;
 
+// Operation on the regions of a layer.
+enum class RegionOperation { sieve, fill_holes, majority, border, pieces };
+std::string_view name(RegionOperation value);
+void read(const nlohmann::json& json, RegionOperation& value);
+nlohmann::json to_json(const RegionOperation& value);
+
+// Result of an operation on the regions of a layer.
+struct CleanupReport {
+  RegionOperation operation{};
+  bool applied = false;  // false: this was a preview, or there was nothing to change.
+  // Number of regions that change: for sieve and fill-holes, the regions with a new value; for
+  // pieces, the new records. 0 for majority and border.
+  std::int64_t regions = 0;
+  // Number of texels that change. In a preview, the number that would change.
+  std::int64_t texels = 0;
+  double area_m2 = 0;  // Area of these texels.
+  // Number of texels that stay as they are, because they were edited while the result was computed.
+  std::optional<std::int64_t> skipped_texels;
+  std::optional<std::int64_t> sequence;  // Sequence of the edit. Absent if there was no edit.
+  std::optional<bool> provisional;  // true: the edit waits for review.
+  // For pieces: the keys of the new records, the largest piece first.
+  std::optional<std::vector<std::int64_t>> keys;
+  bool operator==(const CleanupReport&) const = default;
+};
+void read(const nlohmann::json& json, CleanupReport& value);
+nlohmann::json to_json(const CleanupReport& value);
+template <>
+inline constexpr Schema kSchemaOf<CleanupReport> = Schema::CleanupReport;
+
 // File that a job created. The user who started the job can get the file from `/jobs/{job}/file`. The server keeps only the newest files.
 struct JobFile {
   std::string name;
@@ -1896,6 +1929,7 @@ struct Job {
   std::optional<std::vector<std::int64_t>> layers;
   std::optional<std::int64_t> look;  // Id of the surface image that the job created on the model.
   std::optional<TransferReport> report;
+  std::optional<CleanupReport> cleanup;
   std::optional<JobFile> file;
   bool operator==(const Job&) const = default;
 };
@@ -1903,6 +1937,60 @@ void read(const nlohmann::json& json, Job& value);
 nlohmann::json to_json(const Job& value);
 template <>
 inline constexpr Schema kSchemaOf<Job> = Schema::Job;
+
+enum class CleanupOperation { sieve, fill_holes, majority, border };
+std::string_view name(CleanupOperation value);
+void read(const nlohmann::json& json, CleanupOperation& value);
+nlohmann::json to_json(const CleanupOperation& value);
+
+// Clean-up of the regions of a layer.
+struct Cleanup {
+  // sieve: regions smaller than `area_cm2` get the value of the neighbor with the longest common
+  // border. fill-holes: regions without a value that are smaller than `area_cm2` and enclosed by
+  // one value get this value. majority: each texel gets the value with the largest area within
+  // `radius_mm`. border: the border of regions is painted as a line that is `width_mm` wide.
+  CleanupOperation operation{};
+  // For sieve and fill-holes: regions of this area or larger stay unchanged.
+  std::optional<double> area_cm2;
+  bool erase_regions = false;  // For sieve: true: small regions become unpainted instead.
+  std::optional<double> radius_mm;  // For majority: at most 40 texels of the layer (422).
+  // For border: the width of the line. The line is at least one texel wide.
+  std::optional<double> width_mm;
+  // For border: the layer with the regions, with the same resolution. Default: the layer itself.
+  std::optional<LayerRef> from;
+  // For border: the value of the regions. Default: the borders between all values.
+  std::optional<double> of;
+  // For border with `of`: true: the line lies completely inside the regions. false: half of it lies
+  // on each side.
+  bool inside = false;
+  std::optional<double> value;  // For border: the value of the line.
+  bool erase = false;  // For border: true: erase along the line.
+  bool apply = true;  // false: only count what would change.
+  bool operator==(const Cleanup&) const = default;
+};
+void read(const nlohmann::json& json, Cleanup& value);
+nlohmann::json to_json(const Cleanup& value);
+template <>
+inline constexpr Schema kSchemaOf<Cleanup> = Schema::Cleanup;
+
+// Records of the pieces of a class.
+struct PieceRecords {
+  // The layer of records, on the same model and with the same resolution. Its table gets the
+  // records, and the layer gets their keys.
+  LayerRef into;
+  std::optional<double> of;  // The value of the pieces. Default: all values.
+  double min_area_cm2 = 0;  // Smaller pieces get no record.
+  // Slug of a column for the number of the piece, from 1. The largest piece is 1.
+  std::optional<std::string> number_column;
+  std::optional<std::string> area_column;  // Slug of a column for the area in cm².
+  std::optional<std::string> perimeter_column;  // Slug of a column for the perimeter in mm.
+  bool apply = true;  // false: only count the pieces.
+  bool operator==(const PieceRecords&) const = default;
+};
+void read(const nlohmann::json& json, PieceRecords& value);
+nlohmann::json to_json(const PieceRecords& value);
+template <>
+inline constexpr Schema kSchemaOf<PieceRecords> = Schema::PieceRecords;
 
 // Transfer of layers from another version of the same scan.
 struct Transfer {
@@ -2548,7 +2636,7 @@ nlohmann::json to_json(const Reviewer& value);
 template <>
 inline constexpr Schema kSchemaOf<Reviewer> = Schema::Reviewer;
 
-enum class WaitingStrokeOp { stroke, fill, polygon, import, restore };
+enum class WaitingStrokeOp { stroke, fill, polygon, import, cleanup, restore };
 std::string_view name(WaitingStrokeOp value);
 void read(const nlohmann::json& json, WaitingStrokeOp& value);
 nlohmann::json to_json(const WaitingStrokeOp& value);
@@ -2619,7 +2707,7 @@ nlohmann::json to_json(const Review& value);
 template <>
 inline constexpr Schema kSchemaOf<Review> = Schema::Review;
 
-enum class HistoryEntryOp { stroke, fill, polygon, import, compute, undo, redo, restore, accept, reject, reopen, checkpoint };
+enum class HistoryEntryOp { stroke, fill, polygon, import, cleanup, compute, undo, redo, restore, accept, reject, reopen, checkpoint };
 std::string_view name(HistoryEntryOp value);
 void read(const nlohmann::json& json, HistoryEntryOp& value);
 nlohmann::json to_json(const HistoryEntryOp& value);

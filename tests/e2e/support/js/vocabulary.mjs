@@ -420,6 +420,35 @@ export const particulars = {
   },
   redo_table: { path: { table: one("undone", "scratch") } },
   compute_layer: { path: { model: one("wall"), layer: one("risk", "risk", "cracks") } },
+  clean_up_layer: {
+    path: { model: one("wall"), layer: one("cracks", "cracks", "units", "risk") },
+    ...json({
+      by_schema: {
+        Cleanup: one(
+          { operation: "sieve", area_cm2: 0.5, apply: false },
+          { operation: "sieve", area_cm2: 0.1, erase_regions: true },
+          { operation: "fill-holes", area_cm2: 0.5 },
+          { operation: "majority", radius_mm: 1 },
+          { operation: "border", width_mm: 1, of: 3, value: 1 },
+          { operation: "border", width_mm: 1, from: "units", erase: true },
+          { operation: "border", width_mm: 1 },
+        ),
+      },
+    }),
+  },
+  create_piece_records: {
+    path: { model: one("wall"), layer: one("cracks", "cracks", "units") },
+    ...json({
+      by_schema: {
+        PieceRecords: one(
+          { into: "units", apply: false },
+          { into: "units", of: 3, min_area_cm2: 1 },
+          { into: "cracks" },
+          { into: "units", area_column: "nothing" },
+        ),
+      },
+    }),
+  },
   transfer_layers: {
     path: { model: one("wall-2") },
     ...json({ by_name: { layers: one(["cracks"], ["moisture"], ["cracks", "units"]) } }),

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "app/services.h"
+#include "core/ids.h"
+#include "core/memory_ledger.h"
+#include "core/progress.h"
+#include "core/uuid.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "mesh/texels/texel_graph.h"
+#include "query/regions/sieve.h"
+#include "room/room.h"
+
+// Operations on the regions of a painted layer. They are computed on the calling thread from a
+// state of the layer, while other users paint. The result is one edit, which keeps newer paint
+// (room::PatchEdit). All functions block.
+//
+// To add an operation: add its computation to query/regions, its name here, to `cleaned_values`, to
+// the schema `Cleanup` and to the dialog of the page. Open and close in millimeters belong here
+// when the distances along the surface exist.
+namespace strata::app {
+
+struct Cleanup {
+  enum class Operation { sieve, fill_holes, majority, border };
+  Operation operation = Operation::sieve;
+  double area_m2 = 0;                                  // sieve, fill_holes
+  query::SieveTo to = query::SieveTo::longest_border;  // sieve
+  double radius_m = 0;                                 // majority
+  // border
+  std::optional<LayerId> from{};           // layer with the regions; empty: the layer itself
+  std::optional<std::uint32_t> of_bits{};  // value of the regions; empty: all borders
+  double width_m = 0;
+  bool inside = false;
+  query::TexelValue line{};  // without a value: erase
+};
+
+// The author, id and journal record of the edit. With `apply` false, there is no edit.
+struct CleanupEdit {
+  bool apply = true;
+  Uuid id;
+  Author author;
+  nlohmann::json record;
+};
+
+struct CleanupResult {
+  bool applied = false;
+  std::uint64_t regions = 0;  // that get another value; for records of pieces, the new records
+  std::uint64_t texels = 0;   // that change
+  double area_m2 = 0;         // of these texels
+  std::uint64_t skipped_texels = 0;  // that were edited in the meantime
+  std::int64_t sequence = 0;         // of the edit; 0 without an edit
+  bool provisional = false;
+  bool repeated = false;             // the edit with this id was applied before
+  std::vector<std::int64_t> keys{};  // of the new records
+};
+
+// Changes the layer. Refuses a locked layer (403), a radius that is too large and layers with
+// different resolutions (422).
+Result<CleanupResult> clean_up(const Services& services, room::Room& room, const Layer& layer,
+                               const Cleanup& cleanup, const CleanupEdit& edit, Progress& progress);
+
+// A layer with everything that an operation on its regions reads. The memory for the operation is
+// reserved while this object exists.
+struct RegionSource {
+  Layer layer;
+  TileMap tiles;
+  std::shared_ptr<const mesh::SurfaceMap> map;
+  std::shared_ptr<const mesh::TexelGraph> graph;
+  double metres_per_unit = 1;
+  MemoryLedger::Share memory;
+
+  query::SurfaceValues values() const {
+    return query::read_surface_values(tiles, layer.type, *map);
+  }
+};
+Result<RegionSource> region_source(const Services& services, room::Room& room, LayerId layer);
+
+// Submits the patch as an edit of the layer. Returns the result without `regions` and `keys`.
+Result<CleanupResult> apply_patch(const Services& services, room::Room& room,
+                                  const RegionSource& target, query::TexelPatch patch,
+                                  const CleanupEdit& edit, std::vector<std::int64_t> keys,
+                                  Progress& progress);
+
+}  // namespace strata::app

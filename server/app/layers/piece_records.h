@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+
+#include "app/layers/cleanup.h"
+
+namespace strata::app {
+
+inline constexpr std::size_t kMaxPieceRecords = 10'000;
+
+struct PieceRecords {
+  LayerId into = 0;                        // the layer of records
+  std::optional<std::uint32_t> of_bits{};  // value of the pieces; empty: all values
+  double min_area_m2 = 0;
+  // Columns of the table for the number of the piece, its area in cm² and its perimeter in mm.
+  std::optional<ColumnId> number{}, area_cm2{}, perimeter_mm{};
+};
+
+// Creates a record for each connected piece of a class of `layer`, the largest first, and paints
+// the keys of the records on the layer `into`. Notifies participants. If a record cannot be
+// written, nothing is painted (422, `columns`). If the keys cannot be painted, the records are
+// deleted again.
+Result<CleanupResult> make_piece_records(const Services& services, room::Room& room,
+                                         const Layer& layer, const PieceRecords& pieces,
+                                         const CleanupEdit& edit, Progress& progress);
+
+}  // namespace strata::app

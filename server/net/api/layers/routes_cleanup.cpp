@@ -1,0 +1,220 @@
+// Operations on the regions of a layer, as jobs that end with one edit.
+#include <utility>
+
+#include "app/layers/cleanup.h"
+#include "app/layers/piece_records.h"
+#include "app/records/painted_keys.h"
+#include "domain/layers/layer.h"
+#include "domain/people/role.h"
+#include "domain/tables/table.h"
+#include "jobs/job_queue.h"
+#include "net/api/addressed.h"
+#include "net/api/route_help.h"
+#include "net/api/routes.h"
+#include "net/http/job_idempotency.h"
+#include "net/transport/server_options.h"
+#include "room/edit.h"
+#include "room/layers.h"
+#include "room/room.h"
+#include "store/store.h"
+#include "store/tables/tables.h"
+
+namespace strata::net {
+namespace {
+
+using Operation = app::Cleanup::Operation;
+
+Result<double> required(const std::optional<double>& member, const std::string& name) {
+  if (member) return *member;
+  return fail(ErrorCode::invalid, "Value missing", "This operation requires `" + name + "`.", name);
+}
+
+Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::string& field) {
+  auto bits = encode_value(layer.type, value);
+  if (bits) return *bits;
+  Error problem = bits.error();
+  problem.field = field;
+  return tl::unexpected(std::move(problem));
+}
+
+// Finds another layer that the body names. The error names `field`.
+Result<Layer> other_layer(const room::Room& room, const protocol::LayerRef& ref,
+                          const std::string& field) {
+  auto found = STRATA_TRY(find_layers(room, {protocol::to_ref(ref)}, field));
+  return std::move(found.front());
+}
+
+Result<void> read_border(const RouteContext& context, const room::Room& room, const Layer& layer,
+                         const protocol::Cleanup& body, app::Cleanup& cleanup) {
+  cleanup.width_m = STRATA_TRY(required(body.width_mm, "width_mm")) / 1000;
+  cleanup.inside = body.inside;
+  Layer from = layer;
+  if (body.from) {
+    auto other = STRATA_TRY(other_layer(room, *body.from, "from"));
+    from = std::move(other);
+    cleanup.from = from.id;
+  }
+  if (body.of) {
+    const auto bits = STRATA_TRY(bits_of(from, *body.of, "of"));
+    cleanup.of_bits = bits;
+  }
+  if (body.erase) return {};
+  const double value = STRATA_TRY(required(body.value, "value"));
+  const auto bits = STRATA_TRY(bits_of(layer, value, "value"));
+  cleanup.line = {bits, true};
+  if (layer.kind != LayerKind::database) return {};
+  return app::check_keys(context.store, layer, {static_cast<std::int64_t>(bits)});
+}
+
+Result<app::Cleanup> cleanup_of(const RouteContext& context, const room::Room& room,
+                                const Layer& layer, const protocol::Cleanup& body) {
+  app::Cleanup cleanup;
+  static_assert(static_cast<int>(protocol::CleanupOperation::sieve) ==
+                static_cast<int>(Operation::sieve));
+  static_assert(static_cast<int>(protocol::CleanupOperation::border) ==
+                static_cast<int>(Operation::border));
+  cleanup.operation = static_cast<Operation>(body.operation);
+  switch (cleanup.operation) {
+    case Operation::sieve:
+    case Operation::fill_holes:
+      cleanup.area_m2 = STRATA_TRY(required(body.area_cm2, "area_cm2")) / 1e4;
+      if (body.erase_regions) cleanup.to = query::SieveTo::no_value;
+      break;
+    case Operation::majority:
+      cleanup.radius_m = STRATA_TRY(required(body.radius_mm, "radius_mm")) / 1000;
+      break;
+    case Operation::border: STRATA_TRY(read_border(context, room, layer, body, cleanup)); break;
+  }
+  return cleanup;
+}
+
+Result<ColumnId> column_of(const Table& table, const std::string& ref, const std::string& field) {
+  if (const Column* column = find_column(table.columns, ref)) return column->id;
+  return fail(ErrorCode::invalid, "Column not found",
+              "The table " + table.name + " has no column \"" + ref + "\".", field);
+}
+
+Result<app::PieceRecords> pieces_of(const RouteContext& context, const room::Room& room,
+                                    const Layer& layer, const protocol::PieceRecords& body,
+                                    Role role) {
+  const auto into = STRATA_TRY(other_layer(room, body.into, "into"));
+  if (!into.table)
+    return fail(ErrorCode::invalid, "No table",
+                into.name + " is not a layer of records. Choose a layer of records.", "into");
+  STRATA_TRY(room::check_not_locked(into, role));
+  app::PieceRecords pieces;
+  pieces.into = into.id;
+  pieces.min_area_m2 = body.min_area_cm2 / 1e4;
+  if (body.of) {
+    const auto bits = STRATA_TRY(bits_of(layer, *body.of, "of"));
+    pieces.of_bits = bits;
+  }
+  const auto table = STRATA_TRY(context.store.tables().find(to_string(*into.table), role));
+  const auto find = [&](const std::optional<std::string>& ref, const std::string& field,
+                        std::optional<ColumnId>& column) -> Result<void> {
+    if (!ref) return {};
+    const auto found = STRATA_TRY(column_of(table, *ref, field));
+    column = found;
+    return {};
+  };
+  STRATA_TRY(find(body.number_column, "number_column", pieces.number));
+  STRATA_TRY(find(body.area_column, "area_column", pieces.area_cm2));
+  STRATA_TRY(find(body.perimeter_column, "perimeter_column", pieces.perimeter_mm));
+  return pieces;
+}
+
+nlohmann::json report_of(std::string_view operation, const app::CleanupResult& result) {
+  nlohmann::json report{{"operation", operation},
+                        {"applied", result.applied},
+                        {"regions", result.regions},
+                        {"texels", result.texels},
+                        {"area_m2", result.area_m2}};
+  if (!result.applied) return report;
+  report["skipped_texels"] = result.skipped_texels;
+  report["sequence"] = result.sequence;
+  if (result.provisional) report["provisional"] = true;
+  if (!result.keys.empty()) report["keys"] = result.keys;
+  return report;
+}
+
+using Run = std::function<Result<app::CleanupResult>(Progress&)>;
+
+// Returns 202 with a job of the caller. With an Idempotency-Key, a repeated call finds the job. If
+// the server has restarted since, the job runs again, but its edit is not applied twice.
+Result<Response> start_job(const RouteContext& context, JobIdempotency& book,
+                           const Request& request, const Model& model, std::string operation,
+                           Run run) {
+  const auto known = STRATA_TRY(book.find(request));
+  if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
+  const auto job = STRATA_TRY(context.jobs.add(
+      model.project_id,
+      [model_id = model.id, operation = std::move(operation),
+       run = std::move(run)](Progress& progress) -> Result<jobs::JobResult> {
+        const auto done = STRATA_TRY(run(progress));
+        jobs::JobResult result(model_id);
+        result.report = report_of(operation, done);
+        return result;
+      },
+      request.user(), jobs::JobKind::layers));
+  book.started(request, job);
+  return job_response(context, job);
+}
+
+app::CleanupEdit edit_of(const Request& request, const Layer& layer, bool apply,
+                         nlohmann::json body) {
+  nlohmann::json record{{"op", "cleanup"}};
+  record.update(body);
+  return {apply, edit_id(request, layer, "cleanup"), request.author(), std::move(record)};
+}
+
+Result<Response> start_cleanup(const RouteContext& context, JobIdempotency& book,
+                               const Request& request) {
+  const auto body = STRATA_TRY(body_of<protocol::Cleanup>(request));
+  const auto room = STRATA_TRY(open_room(context, request));
+  const auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
+  const auto cleanup = STRATA_TRY(cleanup_of(context, *room, layer, body));
+  auto edit = edit_of(request, layer, body.apply, protocol::to_json(body));
+  if (body.apply) STRATA_TRY(room::check_not_locked(layer, edit.author.role));
+  return start_job(context, book, request, room->model(), std::string(name(body.operation)),
+                   [&services = static_cast<const app::Services&>(context), room, layer, cleanup,
+                    edit = std::move(edit)](Progress& progress) {
+                     return app::clean_up(services, *room, layer, cleanup, edit, progress);
+                   });
+}
+
+Result<Response> start_piece_records(const RouteContext& context, JobIdempotency& book,
+                                     const Request& request) {
+  const auto body = STRATA_TRY(body_of<protocol::PieceRecords>(request));
+  const auto room = STRATA_TRY(open_room(context, request));
+  const auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
+  const auto pieces = STRATA_TRY(pieces_of(context, *room, layer, body, request.role()));
+  auto edit = edit_of(request, layer, body.apply, protocol::to_json(body));
+  edit.record["operation"] = "pieces";
+  edit.record["from"] = to_string(layer.id);
+  return start_job(context, book, request, room->model(), "pieces",
+                   [&services = static_cast<const app::Services&>(context), room, layer, pieces,
+                    edit = std::move(edit)](Progress& progress) {
+                     return app::make_piece_records(services, *room, layer, pieces, edit, progress);
+                   });
+}
+
+}  // namespace
+
+void add_cleanup_routes(Router& router, const RouteContext& context) {
+  const std::string layer = "/api/v1/models/{model}/layers/{layer}";
+  auto book = std::make_shared<JobIdempotency>(context.jobs);
+  const auto add = [&](const std::string& pattern, auto start) {
+    router.add({.method = Method::post,
+                .pattern = layer + pattern,
+                .handler = answering([&context, book, start](const Request& request) {
+                  return start(context, *book, request);
+                }),
+                .role = Role::annotator,
+                .body = BodyKind::memory,
+                .max_body = context.options.max_json_bytes});
+  };
+  add("/cleanup", start_cleanup);
+  add("/piece-records", start_piece_records);
+}
+
+}  // namespace strata::net

@@ -1,0 +1,243 @@
+"""Clean-up of the regions of a layer, and records of the pieces of a class, over HTTP."""
+import math
+import urllib.parse
+
+import pytest
+from support.meshes import folded_grid
+
+M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
+DAMAGE = M + "/layers/damage"
+
+
+def dab(server, layer, value, x, y, radius):
+    query = urllib.parse.urlencode({"radius_mm": radius})
+    return server.ok(
+        "POST",
+        f"{M}/layers/{layer}/readings?{query}",
+        f"x,y,z,value\n{x},{y},0,{value}\n",
+        headers={"Content-Type": "text/csv"},
+    ).json()
+
+
+def area_cm2(server, layer, value):
+    keys = server.get(f"{M}/layers/{layer}/statistics").json()["keys"]
+    return 1e4 * sum(key["area_m2"] for key in keys if key["key"] == value)
+
+
+def value_at(server, layer, x, y):
+    point = urllib.parse.urlencode({"coords": f"POINT Z({x} {y} 0)", "parameter-name": layer})
+    return server.get(f"{M}/position?{point}").json()["values"][layer]
+
+
+def history(server, layer):
+    return server.get(f"{M}/layers/{layer}/edits").json()
+
+
+def run(server, path, body, **more):
+    started = server.ok("POST", path, body, expect=(202,), **more)
+    job = server.wait_for_job(started.json()["id"])
+    assert job["state"] == "done", job
+    return job["cleanup"]
+
+
+def disc(radius_mm):
+    return math.pi * radius_mm**2 / 100
+
+
+@pytest.fixture(scope="module")
+def server(server):
+    server.import_model(
+        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+    )
+    server.ok("POST", M + "/layers", {"name": "Damage", "type": "u8", "resolution": 2048})
+    server.ok("POST", M + "/layers", {"name": "Rims", "type": "u8", "resolution": 2048})
+    columns = [
+        {"name": "Number", "kind": "numeric"},
+        {"name": "Area", "kind": "numeric", "unit": "cm²"},
+        {"name": "Perimeter", "kind": "numeric", "unit": "mm"},
+    ]
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Losses",
+            "kind": "database",
+            "type": "u8",
+            "resolution": 2048,
+            "columns": columns,
+        },
+    )
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Strict",
+            "kind": "database",
+            "type": "u8",
+            "resolution": 2048,
+            "columns": [{"name": "Code", "required": True}],
+        },
+    )
+    dab(server, "damage", 1, 30, 30, 15)
+    dab(server, "damage", 2, 30, 30, 1)  # a speck on the large area
+    dab(server, "damage", 3, 70, 70, 1)  # a speck on nothing
+    dab(server, "damage", 1, 75, 30, 10)
+    return server
+
+
+def test_a_preview_counts_and_changes_nothing(server):
+    before = history(server, "damage")["total"]
+    report = run(server, DAMAGE + "/cleanup", {"operation": "sieve", "area_cm2": 1, "apply": False})
+    assert report["operation"] == "sieve" and not report["applied"] and report["regions"] == 2
+    assert abs(report["area_m2"] * 1e4 / (2 * disc(1)) - 1) < 0.1, report
+    assert "sequence" not in report and history(server, "damage")["total"] == before
+    assert value_at(server, "damage", 30, 30) == 2
+
+
+def test_small_regions_vanish_in_one_edit_that_can_be_undone(server):
+    before = history(server, "damage")["total"]
+    report = run(server, DAMAGE + "/cleanup", {"operation": "sieve", "area_cm2": 1})
+    assert report["applied"] and report["regions"] == 2 and report["skipped_texels"] == 0
+    assert value_at(server, "damage", 30, 30) == 1 and value_at(server, "damage", 70, 70) is None
+    newest = history(server, "damage")["edits"][0]
+    assert newest["op"] == "cleanup" and newest["sequence"] == report["sequence"]
+    assert newest["texels_changed"] == report["texels"]
+    assert history(server, "damage")["total"] == before + 1
+    server.ok("POST", DAMAGE + "/undo")
+    assert value_at(server, "damage", 30, 30) == 2 and value_at(server, "damage", 70, 70) == 3
+    # nothing to change is no edit
+    report = run(server, DAMAGE + "/cleanup", {"operation": "sieve", "area_cm2": 1e-6})
+    assert not report["applied"] and report["texels"] == 0
+
+
+def test_small_regions_can_become_unpainted(server):
+    run(
+        server,
+        DAMAGE + "/cleanup",
+        {"operation": "sieve", "area_cm2": 1, "erase_regions": True},
+    )
+    assert value_at(server, "damage", 30, 30) is None and value_at(server, "damage", 70, 70) is None
+    full = disc(15) + disc(10)
+    assert abs(area_cm2(server, "damage", 1) / (full - disc(1)) - 1) < 0.02
+    # the hole that remains is filled
+    report = run(server, DAMAGE + "/cleanup", {"operation": "fill-holes", "area_cm2": 1})
+    assert report["regions"] == 1 and value_at(server, "damage", 30, 30) == 1
+    assert abs(area_cm2(server, "damage", 1) / full - 1) < 0.02
+
+
+def test_a_repeated_call_is_one_edit(server):
+    key = {"Idempotency-Key": "clean once"}
+    body = {"operation": "majority", "radius_mm": 1}
+    first = server.ok("POST", DAMAGE + "/cleanup", body, headers=key).json()["id"]
+    again = server.ok("POST", DAMAGE + "/cleanup", body, headers=key)
+    assert again.json()["id"] == first and again.headers["Idempotency-Replayed"] == "true"
+    assert server.wait_for_job(first)["state"] == "done"
+    other = server.request("POST", DAMAGE + "/cleanup", {**body, "radius_mm": 2}, headers=key)
+    assert other.status == 422, other
+
+
+def test_a_border_is_painted_into_another_layer(server):
+    body = {
+        "operation": "border",
+        "from": "damage",
+        "of": 1,
+        "width_mm": 2,
+        "value": 7,
+    }
+    report = run(server, M + "/layers/rims/cleanup", body)
+    # two rings, 2 mm wide
+    expected = 2 * math.pi * (15 + 10) * 2 / 100
+    assert abs(report["area_m2"] * 1e4 / expected - 1) < 0.05, report
+    assert value_at(server, "rims", 45, 30) == 7 and value_at(server, "rims", 30, 30) is None
+
+
+def test_what_does_not_fit_is_refused(server):
+    for path, body, field in (
+        ("damage", {"operation": "sieve"}, "area_cm2"),
+        ("damage", {"operation": "majority"}, "radius_mm"),
+        ("damage", {"operation": "border", "value": 1}, "width_mm"),
+        ("damage", {"operation": "border", "width_mm": 1}, "value"),
+        ("damage", {"operation": "border", "width_mm": 1, "value": 300}, "value"),
+        ("damage", {"operation": "border", "width_mm": 1, "value": 1, "of": 1.5}, "of"),
+        ("damage", {"operation": "border", "width_mm": 1, "value": 1, "from": "none"}, "from"),
+        ("losses", {"operation": "border", "width_mm": 1, "value": 99}, "value"),
+    ):
+        refused = server.post(f"{M}/layers/{path}/cleanup", body)
+        assert refused.json()["field"] == field, (body, refused.json())
+        assert refused.status in (404, 422), refused
+    job = server.wait_for_job(
+        server.post(DAMAGE + "/cleanup", {"operation": "majority", "radius_mm": 90}).json()["id"]
+    )
+    assert job["state"] == "failed" and job["problem"]["status"] == 422, job
+    assert job["problem"]["field"] == "radius_mm" and "mm" in job["problem"]["detail"]
+
+
+def test_roles_and_locks_apply(server):
+    viewer = server.add_person("vera", "viewer")
+    annotator = server.add_person("anna", "annotator")
+    body = {"operation": "majority", "radius_mm": 1}
+    pieces = {"into": "losses", "of": 1}
+    for token, status in ((viewer, 403), (annotator, 202)):
+        assert server.request("POST", DAMAGE + "/cleanup", body, token=token).status == status
+        assert (
+            server.request(
+                "POST", DAMAGE + "/piece-records", {**pieces, "apply": False}, token=token
+            ).status
+            == status
+        )
+    server.ok("PATCH", DAMAGE, {"locked": True})
+    refused = server.request("POST", DAMAGE + "/cleanup", body, token=annotator)
+    assert refused.status == 403 and refused.json()["title"] == "Layer is locked", refused
+    # A preview changes nothing, so it is allowed.
+    server.ok("POST", DAMAGE + "/cleanup", {**body, "apply": False}, token=annotator)
+    server.ok("PATCH", DAMAGE, {"locked": False})
+    server.ok("PATCH", M + "/layers/losses", {"locked": True})
+    refused = server.request("POST", DAMAGE + "/piece-records", pieces, token=annotator)
+    assert refused.status == 403, refused
+    server.ok("PATCH", M + "/layers/losses", {"locked": False})
+    # Layers that an annotator cannot see do not exist for them.
+    server.ok("PATCH", M + "/layers/rims", {"visibility": "private"})
+    hidden = {"operation": "border", "from": "rims", "width_mm": 1, "value": 1}
+    assert server.request("POST", DAMAGE + "/cleanup", hidden, token=annotator).status == 404
+    job = server.wait_for_job(server.post(DAMAGE + "/cleanup", hidden).json()["id"])
+    assert job["problem"]["field"] == "from", job
+
+
+def test_each_piece_becomes_a_record(server):
+    path = DAMAGE + "/piece-records"
+    body = {
+        "into": "losses",
+        "of": 1,
+        "min_area_cm2": 1,
+        "number_column": "number",
+        "area_column": "area",
+        "perimeter_column": "perimeter",
+    }
+    assert run(server, path, {**body, "apply": False})["regions"] == 2
+    assert server.get("/tables/losses/records").json()["total"] == 0
+    report = run(server, path, body)
+    assert report["applied"] and report["regions"] == 2 and len(report["keys"]) == 2
+    for key, number, radius in zip(report["keys"], (1, 2), (15, 10)):
+        values = server.get(f"/tables/losses/records/{key}").json()["values"]
+        assert values["number"] == number
+        assert abs(values["area"] / disc(radius) - 1) < 0.02, values
+        assert abs(values["perimeter"] / (2 * math.pi * radius) - 1) < 0.03, values
+    assert value_at(server, "losses", 30, 30) == report["keys"][0]
+    assert value_at(server, "losses", 75, 30) == report["keys"][1]
+
+
+def test_if_a_record_cannot_be_written_nothing_is_painted(server):
+    path = DAMAGE + "/piece-records"
+    job = server.wait_for_job(server.ok("POST", path, {"into": "strict"}).json()["id"])
+    assert job["state"] == "failed" and job["problem"]["status"] == 422, job
+    assert "nothing was changed" in job["problem"]["detail"], job
+    assert history(server, "strict")["total"] == 0
+    assert server.get("/tables/strict/records").json()["total"] == 0
+    assert server.post(path, {"into": "rims"}).json()["field"] == "into"
+    refused = server.post(path, {"into": "losses", "area_column": "none"})
+    assert refused.status == 422 and refused.json()["field"] == "area_column", refused
+
+
+def test_the_server_ends_with_a_clean_log(server):
+    assert server.stop() == 0
+    server.assert_clean_log()
