@@ -13,7 +13,13 @@ const classes = transformerStyleToClass({ classPrefix: "code-" });
 // The order of the pages in the side bar. The build fails if a page is missing in this list or in
 // the folder.
 const howTo = {
-  "Work on the surface": ["use-the-page", "paint-a-layer", "measure", "import-maps"],
+  "Work on the surface": [
+    "use-the-page",
+    "paint-a-layer",
+    "clean-up-regions",
+    "measure",
+    "import-maps",
+  ],
   "Keep records": ["keep-records", "use-lists-of-terms", "attach-files"],
   "Work with others": [
     "work-together",

@@ -1,6 +1,7 @@
 // The dialogs of the model page. They are a separate part (`page-parts.ts`), so the page is shown
 // before they are loaded.
 
+import "../features/layers/cleanup-dialog";
 import "../features/layers/color-dialog";
 import "../features/tables/column-dialog";
 import "../features/tables/csv-dialog";
@@ -10,6 +11,7 @@ import "../features/account/kiosks-dialog";
 import "../features/layers/layer-dialog";
 import "../features/layers/map-dialog";
 import "../features/layers/orthophoto-dialog";
+import "../features/layers/pieces-dialog";
 import "../features/records/photos-dialog";
 import "../features/records/record-dialog";
 import "../features/home/scale-dialog";

@@ -99,7 +99,7 @@ function ofSelectedLayer(host: PageHost): Command[] {
   const open = (
     glyph: IconName,
     text: string,
-    dialog: "statistics" | "colors" | "where" | "edit" | "map",
+    dialog: "statistics" | "colors" | "where" | "edit" | "map" | "cleanup" | "pieces",
     problem?: string,
   ): Command => ({
     ...opening(host, texts.layers.title, glyph, `${labelOf(layer)}: ${text}`, { dialog, layer }),
@@ -112,6 +112,8 @@ function ofSelectedLayer(host: PageHost): Command[] {
     ...(canBeColored(layer) ? [open("palette", texts.colors.open, "colors")] : []),
     open("formula", texts.areas.where, "where", painting),
     open("upload", texts.maps.menu, "map", painting),
+    open("eraser", texts.cleanup.open, "cleanup", painting),
+    open("table", texts.cleanup.open_pieces, "pieces", changeProblem(session)),
     ...(session.canCurate ? [open("edit", texts.layers.edit, "edit")] : []),
   ];
 }

@@ -67,6 +67,18 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
         .layer=${newest(session, dialog.layer)}
         @closed=${closed}
       ></strata-where-dialog>`;
+    case "cleanup":
+      return html`<strata-cleanup-dialog
+        .session=${session}
+        .layer=${newest(session, dialog.layer)}
+        @closed=${closed}
+      ></strata-cleanup-dialog>`;
+    case "pieces":
+      return html`<strata-pieces-dialog
+        .session=${session}
+        .layer=${newest(session, dialog.layer)}
+        @closed=${closed}
+      ></strata-pieces-dialog>`;
     case "record":
       return html`<strata-record-dialog
         .session=${session}

@@ -550,6 +550,12 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       end: close_dialog,
       keyboard: true,
     },
+    { name: "clean up", start: of_layer("cracks", w.cleanup.open), end: close_dialog },
+    {
+      name: "records of pieces",
+      start: of_layer("cracks", w.cleanup.open_pieces),
+      end: close_dialog,
+    },
     { name: "paint from a file", start: of_layer("Moisture", w.maps.menu), end: close_dialog },
     {
       name: "fill where",

@@ -44,7 +44,7 @@ import { visibilityBadge } from "../../ui/visibility";
 export type LayerPanelRequest =
   | TermsRequest
   | { dialog: "create" | "template" | "transfer" }
-  | { dialog: "edit" | "colors" | "statistics" | "map"; layer: Layer };
+  | { dialog: "edit" | "colors" | "statistics" | "map" | "cleanup" | "pieces"; layer: Layer };
 
 @customElement("strata-layer-panel")
 export class StrataLayerPanel extends LitElement {
@@ -337,6 +337,16 @@ export class StrataLayerPanel extends LitElement {
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "map", layer })}>
                   ${icon("upload")}${texts.maps.menu}
+                </button>
+                <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "cleanup", layer })}>
+                  ${icon("eraser")}${texts.cleanup.open}
+                </button>`
+              : nothing
+          }
+          ${
+            session.canPaint
+              ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "pieces", layer })}>
+                  ${icon("table")}${texts.cleanup.open_pieces}
                 </button>`
               : nothing
           }

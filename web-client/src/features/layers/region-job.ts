@@ -1,0 +1,107 @@
+// A job of a dialog on the regions of a layer: a preview or a change.
+
+import { html, nothing, type TemplateResult } from "lit";
+import type { CleanupReport } from "../../core/protocol.gen";
+import type { Job } from "../../core/types";
+import { formatArea } from "../../domain/measure";
+import type { Api } from "../../net/api";
+import { ApiError } from "../../net/api-error";
+import { followJob } from "../../net/follow-job";
+import { texts } from "../../texts";
+import { styled } from "../../ui/styled";
+
+export class RegionJob {
+  /** The running job. */
+  job: Job | null = null;
+  report: CleanupReport | null = null;
+  problem = "";
+  /** The member of the request that the problem is about. */
+  field = "";
+  private _starting = false;
+
+  constructor(
+    private readonly _api: () => Api,
+    private readonly _changed: () => void,
+  ) {}
+
+  get isBusy(): boolean {
+    return this._starting || this.job !== null;
+  }
+
+  refuse(problem: string, field: string): void {
+    [this.report, this.problem, this.field] = [null, problem, field];
+    this._changed();
+  }
+
+  /** Forgets the result, because the input has changed. */
+  reset(): void {
+    this.refuse("", "");
+  }
+
+  /** Starts a job and follows it. Returns its report, or null if it failed or was canceled. */
+  async run(start: () => Promise<Job>): Promise<CleanupReport | null> {
+    if (this.isBusy) return null;
+    this._starting = true;
+    this.reset();
+    try {
+      const first = await start();
+      const last = await followJob(this._api(), first, (job) => {
+        this.job = job;
+        this._changed();
+      });
+      if (last.problem && last.state === "failed") this.tell(last.problem);
+      this.report = last.cleanup ?? null;
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.tell(error.problem);
+    } finally {
+      this._starting = false;
+      this.job = null;
+      this._changed();
+    }
+    return this.report;
+  }
+
+  async cancel(): Promise<void> {
+    if (!this.job) return;
+    try {
+      await this._api().send("DELETE /jobs/{job}", { path: { job: this.job.id } });
+    } catch (error) {
+      // 409: the job has just ended
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status !== 409) this.tell(error.problem);
+    }
+  }
+
+  private tell({ title, detail, field }: { title: string; detail?: string; field?: string }): void {
+    this.problem = detail ?? title;
+    this.field = field ?? "";
+  }
+
+  /** Renders the progress or the result. `unit` counts regions or records. */
+  render(unit: (n: number) => string): TemplateResult {
+    const words = texts.cleanup;
+    const { job, report, problem } = this;
+    const percent = Math.round((job?.progress ?? 0) * 100);
+    return html`${
+      this.isBusy
+        ? html`<div class="progress" role="progressbar" aria-label=${words.progress} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
+              <i ${styled({ width: `${percent}%` })}></i>
+            </div>
+            <button type="button" @click=${() => void this.cancel()}>${words.stop}</button>`
+        : nothing
+    }
+      <p role="status">${report ? reportText(report, unit) : ""}</p>
+      <p class="error" role="alert" ?hidden=${!problem}>${problem}</p>`;
+  }
+}
+
+/** Describes the result of a preview. */
+export function reportText(report: CleanupReport, unit: (n: number) => string): string {
+  const words = texts.cleanup;
+  if (report.texels === 0) return words.nothing;
+  const area = formatArea(report.area_m2);
+  return report.regions > 0
+    ? words.would_change(unit(report.regions), area)
+    : words.would_change_area(area);
+}
