@@ -1,6 +1,7 @@
 #include "query/regions/sieve.h"
 
 #include <algorithm>
+#include <span>
 #include <tuple>
 
 #include "core/progress.h"
