@@ -26,7 +26,8 @@ PgArray ids_of(const std::vector<LayerId>& layers) {
 // Clients receive times in milliseconds. The state at the time of an edit must include the edit.
 // A checkpoint (journal_thinner.h) has no author, but contains the number of strokes of each
 // author. The query returns one row for each interval, author and layer. The rows of an interval
-// are joined in memory, so the number of intervals limits the result.
+// are joined in memory, so the number of intervals limits the result. The first grouping is by
+// stroke as well: count(DISTINCT stroke) would sort all edits, which takes twice as long.
 constexpr const char* kCells =
     "WITH seen AS MATERIALIZED (SELECT time, sequence, layer_id, user_name, stroke FROM edits WHERE model_id = $1 AND layer_id = any($2) "
     "AND time >= coalesce($3::timestamptz, '-infinity') AND time < coalesce($4::timestamptz, 'infinity') + interval '1 millisecond'), "
@@ -35,9 +36,12 @@ constexpr const char* kCells =
     "SELECT s.time, s.sequence, s.layer_id, p ->> 'user', NULL, (p ->> 'edits')::bigint FROM seen s CROSS JOIN LATERAL "
     "(SELECT record FROM edits WHERE model_id = $1 AND sequence = s.sequence AND op = 'checkpoint' LIMIT 1) e "
     "CROSS JOIN LATERAL jsonb_array_elements(e.record -> 'people') p WHERE s.user_name = '') "
-    "SELECT b.low, b.high, least(CASE WHEN b.high > b.low THEN floor(date_part('epoch', s.time - b.low) / "
-    "date_part('epoch', b.high - b.low) * $5)::integer ELSE 0 END, $5 - 1) AS number, s.user_name, s.layer_id, "
-    "(count(DISTINCT s.stroke) + sum(s.others))::bigint, min(s.sequence), max(s.sequence), min(s.time), max(s.time) FROM counted s CROSS JOIN bounds b GROUP BY 1, 2, 3, 4, 5 ORDER BY 3";
+    "strokes AS (SELECT least(CASE WHEN b.high > b.low THEN floor(date_part('epoch', s.time - b.low) / "
+    "date_part('epoch', b.high - b.low) * $5)::integer ELSE 0 END, $5 - 1) AS number, s.user_name, s.layer_id, s.stroke, "
+    "sum(s.others) AS others, min(s.sequence) AS first, max(s.sequence) AS last, min(s.time) AS begun, max(s.time) AS ended "
+    "FROM counted s CROSS JOIN bounds b GROUP BY 1, 2, 3, 4) "
+    "SELECT b.low, b.high, number, user_name, layer_id, (count(stroke) + sum(others))::bigint, min(first), max(last), min(begun), "
+    "max(ended) FROM strokes CROSS JOIN bounds b GROUP BY 1, 2, 3, 4, 5 ORDER BY 3";
 
 // A checkpoint has an author if all its edits are by one person. Its second edit, which has no
 // authors, is not a step.
