@@ -35,7 +35,7 @@ constexpr const char* kCells =
     "counted AS (SELECT time, sequence, layer_id, user_name, stroke, 0::bigint AS others FROM seen WHERE user_name <> '' UNION ALL "
     "SELECT s.time, s.sequence, s.layer_id, p ->> 'user', NULL, (p ->> 'edits')::bigint FROM seen s CROSS JOIN LATERAL "
     "(SELECT record FROM edits WHERE model_id = $1 AND sequence = s.sequence AND op = 'checkpoint' LIMIT 1) e "
-    "CROSS JOIN LATERAL jsonb_array_elements(e.record -> 'people') p WHERE s.user_name = '') "
+    "CROSS JOIN LATERAL jsonb_array_elements(e.record -> 'people') p WHERE s.user_name = ''), "
     "strokes AS (SELECT least(CASE WHEN b.high > b.low THEN floor(date_part('epoch', s.time - b.low) / "
     "date_part('epoch', b.high - b.low) * $5)::integer ELSE 0 END, $5 - 1) AS number, s.user_name, s.layer_id, s.stroke, "
     "sum(s.others) AS others, min(s.sequence) AS first, max(s.sequence) AS last, min(s.time) AS begun, max(s.time) AS ended "

@@ -26,7 +26,8 @@ def area_cm2(server, layer, value):
 
 def value_at(server, layer, x, y):
     point = urllib.parse.urlencode({"coords": f"POINT Z({x} {y} 0)", "parameter-name": layer})
-    return server.get(f"{M}/position?{point}").json()["values"][layer]
+    found = server.get(f"{M}/position?{point}").json()["values"][layer]
+    return found.get("key", found.get("value")) if found["valid"] else None
 
 
 def history(server, layer):
