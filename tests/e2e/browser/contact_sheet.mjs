@@ -2,7 +2,8 @@
 // screenshots have the window sizes of a phone, a tablet and a desktop computer. This is not a test
 // and detects no errors. `scripts/contact_sheet` runs it. The first argument is the folder for the
 // output. `--language` and `--theme` set the page's language and theme. `--windows` selects the
-// windows. The window of a wall display has 4K.
+// windows. The window of a wall display has 4K. `--only` takes pictures of some screens only, by
+// name. The others are opened too, because a screen may need those before it.
 import { mkdirSync, statSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -28,6 +29,7 @@ const { values, positionals } = parseArgs({
     language: { type: "string", default: "en" },
     theme: { type: "string", default: "light" },
     windows: { type: "string", default: "phone,tablet,desk" },
+    only: { type: "string" },
   },
 });
 const { language, theme } = values;
@@ -39,7 +41,7 @@ if (
   !windows.every((each) => each in kSizes)
 ) {
   console.error(
-    "contact_sheet FOLDER [--language en|de|es] [--theme light|dark|contrast] [--windows phone,tablet,desk,wall]",
+    "contact_sheet FOLDER [--language en|de|es] [--theme light|dark|contrast] [--windows phone,tablet,desk,wall] [--only SCREEN,…]",
   );
   process.exit(2);
 }
@@ -127,13 +129,15 @@ try {
     theme,
   );
   const site = await make_site(server, bea);
+  const wanted = values.only?.split(",");
+  const is_wanted = ({ name }) => !wanted || wanted.includes(name);
   const screens = screens_of(viewer, texts_of(language), site);
   const take_all = async (of) => {
     for (const screen of of) {
       console.log((step = screen.name));
       await screen.start();
       await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
-      await take(screen);
+      if (is_wanted(screen)) await take(screen);
       await screen.end?.();
     }
   };
@@ -143,7 +147,7 @@ try {
   await take_all(of_kiosk);
   screens.push(...of_kiosk);
   const sheet = join(folder, "index.html");
-  writeFileSync(sheet, sheet_of(screens));
+  writeFileSync(sheet, sheet_of(screens.filter(is_wanted)));
   console.log(`${sheet}\n${await picture_of(sheet)}`);
 } catch (error) {
   console.error(`failed at: ${step}`);
