@@ -62,7 +62,7 @@ std::uint32_t BorderLines::Surroundings::beyond_seam(std::size_t direction) {
   return found;
 }
 
-const BorderLines::Surroundings::Reach& BorderLines::Surroundings::reach() {
+const SeamReach& BorderLines::Surroundings::reach() {
   if (reach_) return *reach_;
   reach_.emplace();
   struct Reached {

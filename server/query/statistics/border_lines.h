@@ -12,6 +12,12 @@
 
 namespace strata::query {
 
+// The texels over a seam that a path of at most three steps from a texel reaches.
+struct SeamReach {
+  std::vector<std::uint32_t> over_seam;
+  bool at_open_edge = false;
+};
+
 // Short lines through texels, which measure borders by counting their crossings (see perimeter.h
 // for the method). Each line runs from a texel to a texel one or two steps away, in 8 directions
 // and their opposites, also across seams of the atlas.
@@ -76,12 +82,7 @@ class BorderLines {
     std::uint32_t beyond_seam(std::size_t direction);
 
    private:
-    struct Reach {
-      std::vector<std::uint32_t> over_seam;
-      bool at_open_edge = false;
-    };
-    // Returns the texels that a path of at most three steps reaches.
-    const Reach& reach();
+    const SeamReach& reach();
     bool are_beside(std::uint32_t a, std::uint32_t b) const;
     std::array<double, kDirections> weigh();
     // Returns the sides of a texel as vectors on the surface.
@@ -90,7 +91,7 @@ class BorderLines {
     const BorderLines& lines_;
     const std::uint32_t texel_;
     std::optional<std::array<double, kDirections>> weights_{};
-    std::optional<Reach> reach_{};
+    std::optional<SeamReach> reach_{};
     std::optional<std::pair<glm::dvec3, glm::dvec3>> sides_{};
   };
 

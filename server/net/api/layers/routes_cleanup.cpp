@@ -161,7 +161,7 @@ Result<Response> start_job(const RouteContext& context, JobIdempotency& book,
 }
 
 app::CleanupEdit edit_of(const Request& request, const Layer& layer, bool apply,
-                         nlohmann::json body) {
+                         const nlohmann::json& body) {
   nlohmann::json record{{"op", "cleanup"}};
   record.update(body);
   return {apply, edit_id(request, layer, "cleanup"), request.author(), std::move(record)};

@@ -68,7 +68,7 @@ export class StrataSurveyBar extends LitElement {
         flex: 0 1 auto;
         width: auto;
         min-width: 5rem;
-        max-width: 12rem;
+        max-width: 15rem;
       }
       @media (max-width: 820px) {
         :host {

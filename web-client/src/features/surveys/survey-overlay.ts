@@ -60,7 +60,7 @@ export class StrataSurveyOverlay extends LitElement {
         left: 0.75rem;
       }
       .label.right {
-        right: 4.75rem; /* left of the bar on the stage */
+        right: 6rem; /* left of the cube and the bar on the stage */
       }
       @media (max-width: 820px) {
         .label {
