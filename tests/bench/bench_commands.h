@@ -7,6 +7,7 @@ namespace strata::bench {
 
 using Command = std::function<int()>;
 Command add_atlas(CLI::App& app);
+Command add_distance(CLI::App& app);
 Command add_edit(CLI::App& app);
 Command add_frames(CLI::App& app);
 Command add_import(CLI::App& app);
