@@ -14,8 +14,6 @@ import { askAccount } from "../ui/account-menu";
 import "../ui/status-page";
 import type { WhereRequest } from "../features/painting/brush-panel";
 import "../features/painting/brush-panel";
-import "../features/comments/comment-card";
-import "../features/comments/comment-panel";
 import "../features/comments/comment-pins";
 import { modalIsOpen } from "../ui/dialog";
 import { icon, logo } from "../ui/icons";
@@ -126,7 +124,14 @@ export class StrataModelPage extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    for (const part of ["model_dialogs", "table", "measuring", "activity", "past"] as const)
+    for (const part of [
+      "comments",
+      "model_dialogs",
+      "table",
+      "measuring",
+      "activity",
+      "past",
+    ] as const)
       loadPartLater(part);
     addEventListener("keydown", this.onKeyDown);
     addEventListener("keyup", this.onKeyUp);
@@ -338,7 +343,7 @@ export class StrataModelPage extends LitElement {
           ${this.surveys(session)}
           <strata-together-bar .session=${session}></strata-together-bar>
           <strata-comment-pins .session=${session}></strata-comment-pins>
-          ${session.comments.card === null ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
+          ${session.comments.card === null || !hasPart("comments", this) ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
           <strata-picture-bar .session=${session}></strata-picture-bar>
           ${lostBanner(session)}
           <div class="readings">
@@ -481,6 +486,7 @@ export class StrataModelPage extends LitElement {
           ></strata-view-panel>
         </section>`;
       case "comments":
+        if (!hasPart("comments", this)) return html``;
         return html`<section><strata-comment-panel .session=${session}></strata-comment-panel></section>`;
       case "activity":
         if (!hasPart("activity", this)) return html``;

@@ -12,6 +12,7 @@ export type PagePart =
   | "table"
   | "measuring"
   | "activity"
+  | "comments"
   | "past"
   | "surveys"
   | "join"

@@ -57,6 +57,12 @@ setPartLoads({
       import("../features/review/review-panel"),
     ]),
   ),
+  comments: later(() =>
+    Promise.all([
+      import("../features/comments/comment-card"),
+      import("../features/comments/comment-panel"),
+    ]),
+  ),
   past: later(() =>
     Promise.all([
       import("../features/past/past-bar"),

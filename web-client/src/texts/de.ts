@@ -938,56 +938,7 @@ export const texts = {
 
   cleanup: {
     open: "Bereinigen…",
-    title: (layer) => `„${layer}“ bereinigen`,
-    operation: "Verfahren",
-    operations: {
-      sieve: "Kleine Gebiete entfernen",
-      "fill-holes": "Kleine Löcher füllen",
-      majority: "Nach Mehrheit glätten",
-      border: "Grenze malen",
-    },
-    leads: {
-      sieve:
-        "Jedes kleine Gebiet erhält den Wert des Nachbarn mit der längsten gemeinsamen Grenze. Sie können dies rückgängig machen.",
-      "fill-holes":
-        "Unbemalte Gebiete, die ein einziger Wert umschließt, erhalten diesen Wert. Sie können dies rückgängig machen.",
-      majority:
-        "Jede Stelle erhält den Wert mit der größten Fläche in ihrer Umgebung. Sie können dies rückgängig machen.",
-      border: "Die Grenzen von Gebieten werden zu Linien. Sie können dies rückgängig machen.",
-    },
-    smaller_than: "Kleiner als",
-    erase_regions: "Kleine Gebiete löschen",
-    radius: "Radius",
-    width: "Breite der Linie",
-    regions_of: "Gebiete von",
-    class: "Wert der Gebiete",
-    all_values: "Alle Werte",
-    inside: "Linie innerhalb der Gebiete",
-    preview: "Vorschau",
-    apply: "Anwenden",
-    stop: "Berechnung abbrechen",
-    progress: "Berechnung",
-    nothing: "Es würde sich nichts ändern.",
-    regions: (n) => count(n, "Gebiet", "Gebiete"),
-    would_change: (what, area) => `Zu ändern: ${what}, insgesamt ${area}.`,
-    would_change_area: (area) => `Zu ändern: ${area}.`,
-    skipped: "Stellen, die inzwischen bemalt wurden, blieben unverändert.",
-    bad_size: "Geben Sie eine Zahl größer als 0 ein.",
-    bad_value: "Geben Sie eine Zahl ein, oder lassen Sie das Feld für alle Werte leer.",
     open_pieces: "Datensätze aus Teilstücken…",
-    pieces_title: (layer) => `Datensätze aus Teilstücken von „${layer}“`,
-    pieces_lead:
-      "Jedes zusammenhängende Teilstück der Klasse wird ein Datensatz. Wenn ein Datensatz nicht angelegt werden kann, ändert sich nichts.",
-    no_targets: "Das Modell hat keine andere Ebene mit Datensätzen und gleicher Auflösung.",
-    into: "Ebene mit Datensätzen",
-    min_area: "Kleinste Fläche",
-    number_column: "Spalte für die Nummer",
-    area_column: "Spalte für die Fläche in cm²",
-    perimeter_column: "Spalte für den Umfang in mm",
-    no_column: "Keine",
-    pieces: (n) => count(n, "Teilstück", "Teilstücke"),
-    make_records: "Datensätze anlegen",
-    records_made: (n) => `${count(n, "Datensatz", "Datensätze")} angelegt.`,
   },
 
   transfer: {

@@ -14,7 +14,7 @@ export interface ClassField {
 }
 
 export function classField({ layer, value, wrong, typed }: ClassField): TemplateResult {
-  const words = texts.cleanup;
+  const words = texts.regions;
   const { palette } = layer;
   const hasClasses =
     layer.table === undefined && palette.mode === "categorical" && palette.points.length > 0;

@@ -21,7 +21,7 @@ import { cleanupOf, kOperations, type CleanupInput } from "./cleanup-request";
 import { RegionJob } from "./region-job";
 import { regionStyles } from "./region-styles";
 
-const words = texts.cleanup;
+const words = texts.regions;
 
 @customElement("strata-cleanup-dialog")
 export class StrataCleanupDialog extends LitElement {

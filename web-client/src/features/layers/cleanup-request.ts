@@ -33,13 +33,13 @@ const isRefusal = (value: number | Refusal): value is Refusal => typeof value !=
 
 function lengthOf(text: string, field: string): number | Refusal {
   const value = readNumber(text);
-  return value > 0 ? value : { problem: texts.cleanup.bad_size, field };
+  return value > 0 ? value : { problem: texts.regions.bad_size, field };
 }
 
 function valueOf(text: string): { of?: number } | Refusal {
   if (text.trim() === "") return {};
   const value = readNumber(text);
-  return Number.isFinite(value) ? { of: value } : { problem: texts.cleanup.bad_value, field: "of" };
+  return Number.isFinite(value) ? { of: value } : { problem: texts.regions.bad_value, field: "of" };
 }
 
 export function cleanupOf(input: CleanupInput, apply: boolean): Cleanup | Refusal {
@@ -87,7 +87,7 @@ export function piecesOf(input: PiecesInput, apply: boolean): PieceRecords | Ref
   if ("problem" in of) return of;
   const isEmpty = input.minArea.trim() === "";
   const minArea = isEmpty ? 0 : readNumber(input.minArea);
-  if (!(minArea >= 0)) return { problem: texts.cleanup.bad_size, field: "min_area_cm2" };
+  if (!(minArea >= 0)) return { problem: texts.regions.bad_size, field: "min_area_cm2" };
   return {
     into: input.into,
     ...of,

@@ -18,7 +18,7 @@ import { piecesOf, type PiecesInput } from "./cleanup-request";
 import { RegionJob } from "./region-job";
 import { regionStyles } from "./region-styles";
 
-const words = texts.cleanup;
+const words = texts.regions;
 
 /** Returns the layers of records that can get the pieces of a layer. */
 export function targetsOf(layers: readonly Layer[], layer: Layer): Layer[] {

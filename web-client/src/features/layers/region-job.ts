@@ -80,7 +80,7 @@ export class RegionJob {
 
   /** Renders the progress or the result. `unit` counts regions or records. */
   render(unit: (n: number) => string): TemplateResult {
-    const words = texts.cleanup;
+    const words = texts.regions;
     const { job, report, problem } = this;
     const percent = Math.round((job?.progress ?? 0) * 100);
     return html`${
@@ -98,7 +98,7 @@ export class RegionJob {
 
 /** Describes the result of a preview. */
 export function reportText(report: CleanupReport, unit: (n: number) => string): string {
-  const words = texts.cleanup;
+  const words = texts.regions;
   if (report.texels === 0) return words.nothing;
   const area = formatArea(report.area_m2);
   return report.regions > 0

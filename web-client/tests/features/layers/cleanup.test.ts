@@ -12,7 +12,7 @@ import { RegionJob, reportText } from "../../../src/features/layers/region-job";
 import { Api } from "../../../src/net/api";
 import { texts } from "../../../src/texts";
 
-const words = texts.cleanup;
+const words = texts.regions;
 const input: CleanupInput = {
   operation: "sieve",
   area: "2.5",
