@@ -176,8 +176,11 @@ int run(Options options) {
   std::sscanf(options.window.c_str(), "%dx%d", &settings.width, &settings.height);
   std::optional<ParaViewPeer> peer;
   std::string why_no_peer;
-  if (options.has("peer") && !(peer = ParaViewPeer::find(why_no_peer)))
-    std::fprintf(stderr, "strata-bench: ParaView is NOT measured: %s\n", why_no_peer.c_str());
+  if (options.has("peer")) {
+    peer = ParaViewPeer::find(why_no_peer);
+    if (!peer)
+      std::fprintf(stderr, "strata-bench: ParaView is NOT measured: %s\n", why_no_peer.c_str());
+  }
   settings.has_plain = peer.has_value();
 
   const StreamSite site(settings);

@@ -27,8 +27,8 @@ constexpr double kLongestWait_ms = 250;  // as in web-client/src/net/stroke.ts
 // A timer with regular ticks. It does not repeat missed ticks.
 class Beat {
  public:
-  Beat(asio::any_io_executor executor, Clock::duration every)
-      : every_(every), next_(Clock::now()), timer_(std::move(executor)) {}
+  Beat(const asio::any_io_executor& executor, Clock::duration every)
+      : every_(every), next_(Clock::now()), timer_(executor) {}
   asio::awaitable<void> next() {
     next_ = std::max(next_ + every_, Clock::now());
     timer_.expires_at(next_);

@@ -43,7 +43,7 @@ protocol::CameraUpdate camera_update(const Camera& camera, std::uint64_t seq, bo
 
 }  // namespace
 
-LiveClient::LiveClient(asio::io_context& context, asio::ip::tcp::endpoint at,
+LiveClient::LiveClient(asio::io_context& context, const asio::ip::tcp::endpoint& at,
                        std::uint16_t server_port)
     : socket_(context),
       at_(at),

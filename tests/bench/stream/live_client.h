@@ -59,7 +59,7 @@ class LiveClient {
   };
 
   // `at`: the endpoint of the server, or of a link to it.
-  LiveClient(boost::asio::io_context& context, boost::asio::ip::tcp::endpoint at,
+  LiveClient(boost::asio::io_context& context, const boost::asio::ip::tcp::endpoint& at,
              std::uint16_t server_port);
 
   // Connects, sends the hello message and a camera, and waits until the first frame of full quality
