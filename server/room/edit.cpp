@@ -38,7 +38,15 @@ std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit
     const auto keys = keys_in(import->tiles);
     return {keys.begin(), keys.end()};
   }
-  if (const auto* patch = std::get_if<PatchEdit>(&edit.edit)) return patch->keys;
+  if (const auto* patch = std::get_if<PatchEdit>(&edit.edit)) {
+    // A record may have been deleted since the patch was computed, also one that was painted then.
+    std::set<std::int64_t> keys;
+    for (const auto& [address, tile] : patch->patch.tiles)
+      for (int texel = 0; texel < kTexelsPerTile; ++texel)
+        if (tile.texels.test(texel) && tile.after->valid.test(texel))
+          keys.insert(tile.after->bits(texel));
+    return {keys.begin(), keys.end()};
+  }
   return {};
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/edits.h"
+#include "app/records/painted_keys.h"
 #include "mesh/parallel.h"
 #include "query/regions/border_line.h"
 #include "query/regions/majority.h"
@@ -114,6 +115,7 @@ Result<CleanupResult> apply_patch(const Services& services, room::Room& room,
   request.record = edit.record;
   request.edit = room::PatchEdit{std::move(patch), target.layer.type, target.layer.resolution,
                                  std::move(keys)};
+  STRATA_TRY(check_keys(services.store, target.layer, room::painted_by(target.layer, request)));
   const auto answer = STRATA_TRY(edit_and_wait(room, std::move(request), services.edits));
   result.applied = true;
   result.skipped_texels =

@@ -136,8 +136,11 @@ Result<CleanupResult> make_piece_records(const Services& services, room::Room& r
   if (progress.cancelled()) return cancelled_problem();
   write.dry_run = false;
   const auto change = STRATA_TRY(services.store.records().write(table, write, user));
-  STRATA_TRY(check_records(change, target.layer));
   services.changes.records_changed(change, user);
+  if (auto fits = check_records(change, target.layer); !fits) {
+    delete_again(services, table, change.created, user);
+    return tl::unexpected(std::move(fits.error()));
+  }
 
   auto painted = apply_patch(services, room, target, patch_of_keys(target, found, change.created),
                              edit, change.created, progress);

@@ -17,7 +17,7 @@ struct TexelGraph;
 namespace strata::query {
 
 // More regions than any painting by hand has. The list of so many regions needs about 200 MB.
-inline constexpr std::size_t kMaxRegions = 4'000'000;
+inline constexpr std::size_t kMaxRegions = 1'000'000;
 inline constexpr std::uint32_t kNoRegion = 0xffffffffu;
 
 // Connected texels of one value, or connected texels without a value. Seams of the atlas do not

@@ -49,6 +49,12 @@ export class StrataCleanupDialog extends LitElement {
     followSession(this, "painting", "layers", "tables");
   }
 
+  /** A closed dialog changes nothing. */
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    void this._work.cancel();
+  }
+
   static override styles = [sharedStyles, formStyles, regionStyles];
 
   override render(): TemplateResult {

@@ -50,6 +50,12 @@ export class StrataPiecesDialog extends LitElement {
     followSession(this, "layers", "tables");
   }
 
+  /** A closed dialog changes nothing. */
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    void this._work.cancel();
+  }
+
   static override styles = [sharedStyles, formStyles, regionStyles];
 
   override render(): TemplateResult {

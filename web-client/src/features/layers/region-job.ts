@@ -18,6 +18,7 @@ export class RegionJob {
   /** The member of the request that the problem is about. */
   field = "";
   private _starting = false;
+  private _cancelled = false;
 
   constructor(
     private readonly _api: () => Api,
@@ -42,12 +43,15 @@ export class RegionJob {
   async run(start: () => Promise<Job>): Promise<CleanupReport | null> {
     if (this.isBusy) return null;
     this._starting = true;
+    this._cancelled = false;
     this.reset();
     try {
       const first = await start();
       const last = await followJob(this._api(), first, (job) => {
+        const isNew = this.job === null;
         this.job = job;
         this._changed();
+        if (isNew && this._cancelled) void this.cancel();
       });
       if (last.problem && last.state === "failed") this.tell(last.problem);
       this.report = last.cleanup ?? null;
@@ -62,7 +66,9 @@ export class RegionJob {
     return this.report;
   }
 
+  /** Cancels the job, also if its start is not confirmed yet. */
   async cancel(): Promise<void> {
+    this._cancelled = true;
     if (!this.job) return;
     try {
       await this._api().send("DELETE /jobs/{job}", { path: { job: this.job.id } });

@@ -195,6 +195,15 @@ describe("the job of a dialog", () => {
     expect(await work.run(start)).toBeNull();
     expect([work.isBusy, work.problem]).toEqual([false, "Ask a curator."]);
   });
+  it("can be canceled before the server has confirmed its start", async () => {
+    answers = [job("queued"), job("cancelled")];
+    const done = work.run(start);
+    await work.cancel();
+    expect(asked).toEqual(["POST /models/3/layers/9/cleanup"]);
+    await vi.advanceTimersByTimeAsync(800);
+    expect(await done).toBeNull();
+    expect(asked.filter((each) => each === "DELETE /jobs/5")).toHaveLength(1);
+  });
   it("can be canceled", async () => {
     answers = [job("running"), job("running"), job("cancelled")];
     const done = work.run(start);
