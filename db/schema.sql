@@ -89,7 +89,7 @@ CREATE TABLE public.activities (
     changed text[],
     visibility text DEFAULT 'public'::text NOT NULL,
     group_name text,
-    CONSTRAINT activities_kind_check CHECK ((kind = ANY (ARRAY['edit'::text, 'layer'::text, 'look'::text, 'view'::text, 'tour'::text, 'snapshot'::text, 'model'::text, 'table'::text, 'columns'::text, 'records'::text, 'comment'::text, 'member'::text, 'project'::text])))
+    CONSTRAINT activities_kind_check CHECK ((kind = ANY (ARRAY['edit'::text, 'layer'::text, 'look'::text, 'view'::text, 'tour'::text, 'snapshot'::text, 'selection'::text, 'model'::text, 'table'::text, 'columns'::text, 'records'::text, 'comment'::text, 'member'::text, 'project'::text])))
 );
 
 CREATE FUNCTION public.activity_of(of_project bigint, of_kind text, of_op text, of_subject text) RETURNS public.activities
@@ -645,7 +645,7 @@ BEGIN
       AND l.layer_id IS NOT DISTINCT FROM line.layer_id AND l.table_id IS NOT DISTINCT FROM line.table_id
       AND l.person IS NOT DISTINCT FROM line.person AND l.group_name IS NOT DISTINCT FROM line.group_name
       -- what is made or deleted, looks among them, which have no id here, is a line of its own
-      AND (line.kind NOT IN ('layer', 'look', 'view', 'tour', 'snapshot', 'model', 'table') OR (line.op = 'changed' AND l.subject = line.subject))
+      AND (line.kind NOT IN ('layer', 'look', 'view', 'tour', 'snapshot', 'selection', 'model', 'table') OR (line.op = 'changed' AND l.subject = line.subject))
     ORDER BY l.time DESC, l.id DESC LIMIT 1);
   IF NOT FOUND THEN
     INSERT INTO activities (project_id, model_id, layer_id, table_id, record_key, comment_id, subject, user_name, kind, op, begun, time,
@@ -766,6 +766,23 @@ CREATE FUNCTION public.role_rank(role text) RETURNS integer
     LANGUAGE sql IMMUTABLE
     AS $$ SELECT array_position(ARRAY['guest', 'viewer', 'annotator', 'curator', 'administrator', 'owner'], role) $$;
 
+CREATE FUNCTION public.selection_to_nodes() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  was boolean := TG_OP <> 'INSERT' AND OLD.content ->> 'audience' = 'everyone';
+  is_now boolean := TG_OP <> 'DELETE' AND NEW.content ->> 'audience' = 'everyone';
+  own_id bigint := CASE WHEN TG_OP = 'DELETE' THEN OLD.id ELSE NEW.id END;
+  of_model bigint := CASE WHEN TG_OP = 'DELETE' THEN OLD.model_id ELSE NEW.model_id END;
+BEGIN
+  IF was OR is_now THEN
+    PERFORM send_to_nodes('selection', CASE WHEN was AND is_now THEN 'changed' WHEN is_now THEN 'created' ELSE 'deleted' END, NULL, m.id,
+      ARRAY[own_id], activity_author())
+    FROM models m WHERE m.id = of_model;
+  END IF;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.send_to_nodes(of_kind text, of_event text, of_project bigint, of_model bigint, of_subjects bigint[], of_user text, of_sequence bigint DEFAULT NULL::bigint) RETURNS void
     LANGUAGE plpgsql
     AS $_$
@@ -839,7 +856,7 @@ BEGIN
   IF of_kind = 'layer' AND TG_OP = 'DELETE' THEN
     UPDATE activities SET visibility = thing ->> 'visibility' WHERE model_id = (thing ->> 'model_id')::bigint AND layer_id = own_id;
   END IF;
-  IF of_kind IN ('layer', 'look', 'view', 'tour', 'snapshot') THEN
+  IF of_kind IN ('layer', 'look', 'view', 'tour', 'snapshot', 'selection') THEN
     SELECT m.project_id INTO of_project FROM models m WHERE m.id = (thing ->> 'model_id')::bigint;
   ELSIF of_kind = 'project' THEN
     of_project := own_id;
@@ -1613,7 +1630,7 @@ CREATE TABLE public.jobs (
     ended timestamp with time zone,
     node uuid,
     CONSTRAINT jobs_check CHECK (((ended IS NULL) = (state = 'begun'::text))),
-    CONSTRAINT jobs_kind_check CHECK ((kind = ANY (ARRAY['import'::text, 'layers'::text, 'look'::text, 'figure'::text]))),
+    CONSTRAINT jobs_kind_check CHECK ((kind = ANY (ARRAY['import'::text, 'layers'::text, 'look'::text, 'figure'::text, 'regions'::text, 'changes'::text]))),
     CONSTRAINT jobs_state_check CHECK ((state = ANY (ARRAY['begun'::text, 'done'::text, 'failed'::text, 'cancelled'::text, 'lost'::text])))
 );
 
@@ -1731,7 +1748,7 @@ CREATE TABLE public.node_messages (
     sequence bigint,
     user_name text NOT NULL,
     CONSTRAINT node_messages_event_check CHECK ((event = ANY (ARRAY['created'::text, 'changed'::text, 'deleted'::text]))),
-    CONSTRAINT node_messages_kind_check CHECK ((kind = ANY (ARRAY['records'::text, 'table'::text, 'comment'::text, 'view'::text, 'snapshot'::text, 'tool'::text, 'access'::text, 'kiosk'::text]))),
+    CONSTRAINT node_messages_kind_check CHECK ((kind = ANY (ARRAY['records'::text, 'table'::text, 'comment'::text, 'view'::text, 'snapshot'::text, 'selection'::text, 'tool'::text, 'access'::text, 'kiosk'::text]))),
     CONSTRAINT node_messages_subject_ids_check CHECK ((cardinality(subject_ids) <= 500))
 );
 
@@ -1869,6 +1886,30 @@ CREATE TABLE public.schema_migrations (
     unreadable_since timestamp with time zone,
     CONSTRAINT schema_migrations_applied_by_check CHECK ((char_length(applied_by) <= 255)),
     CONSTRAINT schema_migrations_readable_from_check CHECK ((readable_from > 0))
+);
+
+CREATE TABLE public.selections (
+    id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    slug text NOT NULL,
+    name text NOT NULL,
+    text text DEFAULT ''::text NOT NULL,
+    content jsonb NOT NULL,
+    user_name text NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT selections_content_check CHECK (((content ->> 'audience'::text) = ANY (ARRAY['personal'::text, 'everyone'::text]))),
+    CONSTRAINT selections_name_check CHECK (((char_length(name) >= 1) AND (char_length(name) <= 200))),
+    CONSTRAINT selections_text_check CHECK ((char_length(text) <= 10000))
+);
+
+ALTER TABLE public.selections ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.selections_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
 );
 
 CREATE TABLE public.sign_ons (
@@ -2222,6 +2263,12 @@ ALTER TABLE ONLY public.schema_checksums
 ALTER TABLE ONLY public.schema_migrations
     ADD CONSTRAINT schema_migrations_pkey PRIMARY KEY (version);
 
+ALTER TABLE ONLY public.selections
+    ADD CONSTRAINT selections_model_id_slug_key UNIQUE (model_id, slug);
+
+ALTER TABLE ONLY public.selections
+    ADD CONSTRAINT selections_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.sign_ons
     ADD CONSTRAINT sign_ons_issuer_subject_key UNIQUE (issuer, subject);
 
@@ -2507,6 +2554,8 @@ CREATE TRIGGER model_in_trash_is_audited AFTER UPDATE OF binned, erasing ON publ
 
 CREATE TRIGGER model_is_activity AFTER INSERT OR UPDATE OF name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, object_id, survey_date ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('model');
 
+CREATE TRIGGER new_selection_is_activity AFTER INSERT ON public.selections FOR EACH ROW WHEN (((new.content ->> 'audience'::text) = 'everyone'::text)) EXECUTE FUNCTION public.thing_is_activity('selection');
+
 CREATE TRIGGER project_deletion_is_audited AFTER DELETE ON public.projects FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('project');
 
 CREATE TRIGGER project_group_is_activity AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_groups FOR EACH ROW EXECUTE FUNCTION public.project_group_is_activity();
@@ -2522,6 +2571,16 @@ CREATE TRIGGER project_settings_are_audited AFTER UPDATE OF require_if_match ON 
 CREATE CONSTRAINT TRIGGER record_deletion_is_audited AFTER INSERT ON public.table_edits DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((new.op = ANY (ARRAY['delete'::text, 'detach'::text, 'restore'::text, 'undo'::text, 'redo'::text]))) EXECUTE FUNCTION public.record_deletion_is_audited();
 
 CREATE TRIGGER records_to_nodes AFTER INSERT ON public.table_edits FOR EACH ROW EXECUTE FUNCTION public.records_to_nodes();
+
+CREATE TRIGGER selection_change_is_activity AFTER UPDATE OF name, text, content ON public.selections FOR EACH ROW WHEN (((new.content ->> 'audience'::text) = 'everyone'::text)) EXECUTE FUNCTION public.thing_is_activity('selection');
+
+CREATE TRIGGER selection_change_to_nodes AFTER UPDATE OF version ON public.selections FOR EACH ROW WHEN ((old.version <> new.version)) EXECUTE FUNCTION public.selection_to_nodes();
+
+CREATE TRIGGER selection_deletion_is_activity AFTER DELETE ON public.selections FOR EACH ROW WHEN (((old.content ->> 'audience'::text) = 'everyone'::text)) EXECUTE FUNCTION public.thing_is_activity('selection');
+
+CREATE TRIGGER selection_deletion_is_audited AFTER DELETE ON public.selections FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('selection');
+
+CREATE TRIGGER selection_to_nodes AFTER INSERT OR DELETE ON public.selections FOR EACH ROW EXECUTE FUNCTION public.selection_to_nodes();
 
 CREATE TRIGGER sign_on_is_audited AFTER INSERT ON public.sign_ons FOR EACH ROW EXECUTE FUNCTION public.sign_on_is_audited();
 
@@ -2706,6 +2765,9 @@ ALTER TABLE ONLY public.record_tables
 
 ALTER TABLE ONLY public.record_views
     ADD CONSTRAINT record_views_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.selections
+    ADD CONSTRAINT selections_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.sign_ons
     ADD CONSTRAINT sign_ons_user_id_fkey FOREIGN KEY (user_id) REFERENCES public.users(id);

@@ -199,11 +199,15 @@ class Protocol:
         return found
 
     def in_order(self) -> list[Definition]:
-        """Returns the definitions in an order in which each one follows the definitions to which it refers."""
+        """Returns the definitions in an order in which each one follows the definitions to which it refers.
+        A definition may contain itself only through one with `x-cpp-type`, whose C++ type is complete.
+        """
+        begun: set[str] = set()
         done: dict[str, Definition] = {}
 
         def visit(name):
-            if name not in done:
+            if name not in begun:
+                begun.add(name)
                 for other in sorted(self.dependencies(self.definitions[name].type)):
                     visit(other)
                 done[name] = self.definitions[name]

@@ -309,7 +309,12 @@ tl::unexpected<Error> explain(Schema schema, const json& whole, const std::strin
                     "It does not go with " + listed((*choice)["required"]) + ".", path);
       }
     const auto exclusive = exclusive_members(rule);
-    if (exclusive.size() > 1) enter(exclusive.back());
+    if (exclusive.size() > 1) {
+      const auto sent = std::ranges::find_if(
+          exclusive.rbegin(), exclusive.rend(),
+          [&](const std::string& member) { return value != nullptr && value->contains(member); });
+      enter(sent == exclusive.rend() ? exclusive.back() : *sent);
+    }
     return fail(ErrorCode::invalid, "Members exclude each other",
                 "Give exactly one of " + listed(json(exclusive)) + ".", path);
   }

@@ -491,6 +491,24 @@ void read(const nlohmann::json& json, SnapshotEventEvent& value) {
 
 nlohmann::json to_json(const SnapshotEventEvent& value) { return name(value); }
 
+std::string_view name(SelectionEventEvent value) {
+  switch (value) {
+    case SelectionEventEvent::created: return "created";
+    case SelectionEventEvent::changed: return "changed";
+    case SelectionEventEvent::deleted: return "deleted";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, SelectionEventEvent& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "created") value = SelectionEventEvent::created;
+  if (text == "changed") value = SelectionEventEvent::changed;
+  if (text == "deleted") value = SelectionEventEvent::deleted;
+}
+
+nlohmann::json to_json(const SelectionEventEvent& value) { return name(value); }
+
 std::string_view name(LogLevel value) {
   switch (value) {
     case LogLevel::debug: return "debug";
@@ -610,6 +628,7 @@ std::string_view name(ActivityKind value) {
     case ActivityKind::member: return "member";
     case ActivityKind::project: return "project";
     case ActivityKind::snapshot: return "snapshot";
+    case ActivityKind::selection: return "selection";
   }
   return {};
 }
@@ -629,6 +648,7 @@ void read(const nlohmann::json& json, ActivityKind& value) {
   if (text == "member") value = ActivityKind::member;
   if (text == "project") value = ActivityKind::project;
   if (text == "snapshot") value = ActivityKind::snapshot;
+  if (text == "selection") value = ActivityKind::selection;
 }
 
 nlohmann::json to_json(const ActivityKind& value) { return name(value); }
@@ -743,6 +763,8 @@ std::string_view name(RegionOperation value) {
     case RegionOperation::fill_holes: return "fill-holes";
     case RegionOperation::majority: return "majority";
     case RegionOperation::border: return "border";
+    case RegionOperation::open: return "open";
+    case RegionOperation::close: return "close";
     case RegionOperation::pieces: return "pieces";
   }
   return {};
@@ -754,6 +776,8 @@ void read(const nlohmann::json& json, RegionOperation& value) {
   if (text == "fill-holes") value = RegionOperation::fill_holes;
   if (text == "majority") value = RegionOperation::majority;
   if (text == "border") value = RegionOperation::border;
+  if (text == "open") value = RegionOperation::open;
+  if (text == "close") value = RegionOperation::close;
   if (text == "pieces") value = RegionOperation::pieces;
 }
 
@@ -787,6 +811,8 @@ std::string_view name(CleanupOperation value) {
     case CleanupOperation::fill_holes: return "fill-holes";
     case CleanupOperation::majority: return "majority";
     case CleanupOperation::border: return "border";
+    case CleanupOperation::open: return "open";
+    case CleanupOperation::close: return "close";
   }
   return {};
 }
@@ -797,6 +823,8 @@ void read(const nlohmann::json& json, CleanupOperation& value) {
   if (text == "fill-holes") value = CleanupOperation::fill_holes;
   if (text == "majority") value = CleanupOperation::majority;
   if (text == "border") value = CleanupOperation::border;
+  if (text == "open") value = CleanupOperation::open;
+  if (text == "close") value = CleanupOperation::close;
 }
 
 nlohmann::json to_json(const CleanupOperation& value) { return name(value); }
@@ -852,6 +880,9 @@ std::string_view name(ShapeRecipeKind value) {
     case ShapeRecipeKind::ambient_occlusion: return "ambient_occlusion";
     case ShapeRecipeKind::boundary_distance: return "boundary_distance";
     case ShapeRecipeKind::model_distance: return "model_distance";
+    case ShapeRecipeKind::change: return "change";
+    case ShapeRecipeKind::level_of_detection: return "level_of_detection";
+    case ShapeRecipeKind::significant_change: return "significant_change";
     case ShapeRecipeKind::vertex_property: return "vertex_property";
   }
   return {};
@@ -870,6 +901,9 @@ void read(const nlohmann::json& json, ShapeRecipeKind& value) {
   if (text == "ambient_occlusion") value = ShapeRecipeKind::ambient_occlusion;
   if (text == "boundary_distance") value = ShapeRecipeKind::boundary_distance;
   if (text == "model_distance") value = ShapeRecipeKind::model_distance;
+  if (text == "change") value = ShapeRecipeKind::change;
+  if (text == "level_of_detection") value = ShapeRecipeKind::level_of_detection;
+  if (text == "significant_change") value = ShapeRecipeKind::significant_change;
   if (text == "vertex_property") value = ShapeRecipeKind::vertex_property;
 }
 
@@ -955,6 +989,24 @@ void read(const nlohmann::json& json, HistoryEntryOp& value) {
 
 nlohmann::json to_json(const HistoryEntryOp& value) { return name(value); }
 
+std::string_view name(LikeBy value) {
+  switch (value) {
+    case LikeBy::color: return "color";
+    case LikeBy::normal: return "normal";
+    case LikeBy::value: return "value";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, LikeBy& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "color") value = LikeBy::color;
+  if (text == "normal") value = LikeBy::normal;
+  if (text == "value") value = LikeBy::value;
+}
+
+nlohmann::json to_json(const LikeBy& value) { return name(value); }
+
 std::string_view name(StatisticsPart value) {
   switch (value) {
     case StatisticsPart::pieces: return "pieces";
@@ -1033,6 +1085,38 @@ void read(const nlohmann::json& json, FigureDirection& value) {
 
 nlohmann::json to_json(const FigureDirection& value) { return name(value); }
 
+std::string_view name(RolloutSide value) {
+  switch (value) {
+    case RolloutSide::outside: return "outside";
+    case RolloutSide::inside: return "inside";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, RolloutSide& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "outside") value = RolloutSide::outside;
+  if (text == "inside") value = RolloutSide::inside;
+}
+
+nlohmann::json to_json(const RolloutSide& value) { return name(value); }
+
+std::string_view name(RolloutShape value) {
+  switch (value) {
+    case RolloutShape::cylinder: return "cylinder";
+    case RolloutShape::cone: return "cone";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, RolloutShape& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "cylinder") value = RolloutShape::cylinder;
+  if (text == "cone") value = RolloutShape::cone;
+}
+
+nlohmann::json to_json(const RolloutShape& value) { return name(value); }
+
 std::string_view name(FigureRequestPaper value) {
   switch (value) {
     case FigureRequestPaper::a5: return "a5";
@@ -1066,6 +1150,22 @@ void read(const nlohmann::json& json, FigureRequestOrientation& value) {
 }
 
 nlohmann::json to_json(const FigureRequestOrientation& value) { return name(value); }
+
+std::string_view name(SelectionAudience value) {
+  switch (value) {
+    case SelectionAudience::personal: return "personal";
+    case SelectionAudience::everyone: return "everyone";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, SelectionAudience& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "personal") value = SelectionAudience::personal;
+  if (text == "everyone") value = SelectionAudience::everyone;
+}
+
+nlohmann::json to_json(const SelectionAudience& value) { return name(value); }
 
 void read(const nlohmann::json& json, Background& value) {
   read_member(json, "top", value.top);
@@ -2113,6 +2213,21 @@ nlohmann::json to_json(const SnapshotEvent& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, SelectionEvent& value) {
+  read_member(json, "event", value.event);
+  read_member(json, "selection", value.selection);
+  read_optional_member(json, "user", value.user);
+}
+
+nlohmann::json to_json(const SelectionEvent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "selection";
+  write_member(json, "event", value.event);
+  write_member(json, "selection", value.selection);
+  write_optional_member(json, "user", value.user);
+  return json;
+}
+
 void read(const nlohmann::json& json, Moved& value) {
   read_optional_member(json, "url", value.url);
 }
@@ -2483,6 +2598,24 @@ nlohmann::json to_json(const ModelPatch& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, Quantiles& value) {
+  read_member(json, "p5", value.p5);
+  read_member(json, "p25", value.p25);
+  read_member(json, "p50", value.p50);
+  read_member(json, "p75", value.p75);
+  read_member(json, "p95", value.p95);
+}
+
+nlohmann::json to_json(const Quantiles& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "p5", value.p5);
+  write_member(json, "p25", value.p25);
+  write_member(json, "p50", value.p50);
+  write_member(json, "p75", value.p75);
+  write_member(json, "p95", value.p95);
+  return json;
+}
+
 void read(const nlohmann::json& json, ObjectCreate& value) {
   read_member(json, "name", value.name);
 }
@@ -2513,6 +2646,7 @@ void read(const nlohmann::json& json, CleanupReport& value) {
   read_optional_member(json, "sequence", value.sequence);
   read_optional_member(json, "provisional", value.provisional);
   read_optional_member(json, "keys", value.keys);
+  read_optional_member(json, "unpainted_keys", value.unpainted_keys);
 }
 
 nlohmann::json to_json(const CleanupReport& value) {
@@ -2526,6 +2660,7 @@ nlohmann::json to_json(const CleanupReport& value) {
   write_optional_member(json, "sequence", value.sequence);
   write_optional_member(json, "provisional", value.provisional);
   write_optional_member(json, "keys", value.keys);
+  write_optional_member(json, "unpainted_keys", value.unpainted_keys);
   return json;
 }
 
@@ -2540,6 +2675,130 @@ nlohmann::json to_json(const JobFile& value) {
   write_member(json, "name", value.name);
   write_member(json, "media_type", value.media_type);
   write_member(json, "bytes", value.bytes);
+  return json;
+}
+
+void read(const nlohmann::json& json, ChangedPiece& value) {
+  read_member(json, "value", value.value);
+  read_member(json, "area_m2", value.area_m2);
+  read_member(json, "at", value.at);
+}
+
+nlohmann::json to_json(const ChangedPiece& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "value", value.value);
+  write_member(json, "area_m2", value.area_m2);
+  write_member(json, "at", value.at);
+  return json;
+}
+
+void read(const nlohmann::json& json, ChangedPieces& value) {
+  read_member(json, "pieces", value.pieces);
+  read_member(json, "total", value.total);
+  read_member(json, "area_m2", value.area_m2);
+}
+
+nlohmann::json to_json(const ChangedPieces& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "pieces", value.pieces);
+  write_member(json, "total", value.total);
+  write_member(json, "area_m2", value.area_m2);
+  return json;
+}
+
+void read(const nlohmann::json& json, ClassArea& value) {
+  read_member(json, "value", value.value);
+  read_member(json, "area_m2", value.area_m2);
+}
+
+nlohmann::json to_json(const ClassArea& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "value", value.value);
+  write_member(json, "area_m2", value.area_m2);
+  return json;
+}
+
+void read(const nlohmann::json& json, ClassAgreement& value) {
+  read_member(json, "key", value.key);
+  read_member(json, "area_both_m2", value.area_both_m2);
+  read_member(json, "area_first_m2", value.area_first_m2);
+  read_member(json, "area_second_m2", value.area_second_m2);
+  read_member(json, "iou", value.iou);
+  read_member(json, "f1", value.f1);
+}
+
+nlohmann::json to_json(const ClassAgreement& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "key", value.key);
+  write_member(json, "area_both_m2", value.area_both_m2);
+  write_member(json, "area_first_m2", value.area_first_m2);
+  write_member(json, "area_second_m2", value.area_second_m2);
+  write_member(json, "iou", value.iou);
+  write_member(json, "f1", value.f1);
+  return json;
+}
+
+void read(const nlohmann::json& json, Agreement& value) {
+  read_member(json, "area_m2", value.area_m2);
+  read_member(json, "observed", value.observed);
+  read_member(json, "expected", value.expected);
+  read_member(json, "kappa", value.kappa);
+  read_member(json, "observed_painted", value.observed_painted);
+  read_member(json, "classes", value.classes);
+}
+
+nlohmann::json to_json(const Agreement& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "area_m2", value.area_m2);
+  write_member(json, "observed", value.observed);
+  write_member(json, "expected", value.expected);
+  write_member(json, "kappa", value.kappa);
+  write_member(json, "observed_painted", value.observed_painted);
+  write_member(json, "classes", value.classes);
+  return json;
+}
+
+void read(const nlohmann::json& json, CrossTable& value) {
+  read_member(json, "rows", value.rows);
+  read_member(json, "columns", value.columns);
+  read_member(json, "area_m2", value.area_m2);
+  read_member(json, "texels", value.texels);
+  read_optional_member(json, "agreement", value.agreement);
+}
+
+nlohmann::json to_json(const CrossTable& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "rows", value.rows);
+  write_member(json, "columns", value.columns);
+  write_member(json, "area_m2", value.area_m2);
+  write_member(json, "texels", value.texels);
+  write_optional_member(json, "agreement", value.agreement);
+  return json;
+}
+
+void read(const nlohmann::json& json, LayerChanges& value) {
+  read_member(json, "since", value.since);
+  read_member(json, "layer", value.layer);
+  read_member(json, "area_m2", value.area_m2);
+  read_member(json, "matched_m2", value.matched_m2);
+  read_member(json, "table", value.table);
+  read_member(json, "unmatched_now", value.unmatched_now);
+  read_member(json, "unmatched_then", value.unmatched_then);
+  read_member(json, "appeared", value.appeared);
+  read_member(json, "vanished", value.vanished);
+}
+
+nlohmann::json to_json(const LayerChanges& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "since", value.since);
+  write_member(json, "layer", value.layer);
+  write_member(json, "area_m2", value.area_m2);
+  write_member(json, "matched_m2", value.matched_m2);
+  write_member(json, "table", value.table);
+  write_member(json, "unmatched_now", value.unmatched_now);
+  write_member(json, "unmatched_then", value.unmatched_then);
+  write_member(json, "appeared", value.appeared);
+  write_member(json, "vanished", value.vanished);
   return json;
 }
 
@@ -2594,6 +2853,7 @@ void read(const nlohmann::json& json, Job& value) {
   read_optional_member(json, "look", value.look);
   read_optional_member(json, "report", value.report);
   read_optional_member(json, "cleanup", value.cleanup);
+  read_optional_member(json, "changes", value.changes);
   read_optional_member(json, "file", value.file);
 }
 
@@ -2609,6 +2869,7 @@ nlohmann::json to_json(const Job& value) {
   write_optional_member(json, "look", value.look);
   write_optional_member(json, "report", value.report);
   write_optional_member(json, "cleanup", value.cleanup);
+  write_optional_member(json, "changes", value.changes);
   write_optional_member(json, "file", value.file);
   return json;
 }
@@ -2662,6 +2923,24 @@ nlohmann::json to_json(const PieceRecords& value) {
   write_optional_member(json, "area_column", value.area_column);
   write_optional_member(json, "perimeter_column", value.perimeter_column);
   write_member(json, "apply", value.apply);
+  return json;
+}
+
+void read(const nlohmann::json& json, LayerChangesRequest& value) {
+  read_member(json, "since", value.since);
+  read_optional_member(json, "layer", value.layer);
+  read_member(json, "tolerance_mm", value.tolerance_mm);
+  read_optional_member(json, "max_angle", value.max_angle);
+  read_optional_member(json, "min_area_cm2", value.min_area_cm2);
+}
+
+nlohmann::json to_json(const LayerChangesRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "since", value.since);
+  write_optional_member(json, "layer", value.layer);
+  write_member(json, "tolerance_mm", value.tolerance_mm);
+  write_member(json, "max_angle", value.max_angle);
+  write_member(json, "min_area_cm2", value.min_area_cm2);
   return json;
 }
 
@@ -2971,6 +3250,9 @@ void read(const nlohmann::json& json, ShapeRecipe& value) {
   read_member(json, "kind", value.kind);
   read_optional_member(json, "radius_mm", value.radius_mm);
   read_optional_member(json, "distance_mm", value.distance_mm);
+  read_optional_member(json, "normal_scale_mm", value.normal_scale_mm);
+  read_optional_member(json, "projection_scale_mm", value.projection_scale_mm);
+  read_optional_member(json, "registration_mm", value.registration_mm);
   read_optional_member(json, "rays", value.rays);
   read_optional_member(json, "absolute", value.absolute);
   read_optional_member(json, "model", value.model);
@@ -2983,6 +3265,9 @@ nlohmann::json to_json(const ShapeRecipe& value) {
   write_member(json, "kind", value.kind);
   write_optional_member(json, "radius_mm", value.radius_mm);
   write_optional_member(json, "distance_mm", value.distance_mm);
+  write_optional_member(json, "normal_scale_mm", value.normal_scale_mm);
+  write_optional_member(json, "projection_scale_mm", value.projection_scale_mm);
+  write_optional_member(json, "registration_mm", value.registration_mm);
   write_optional_member(json, "rays", value.rays);
   write_member(json, "absolute", value.absolute);
   write_optional_member(json, "model", value.model);
@@ -3633,27 +3918,67 @@ Result<void> check(const PickRequest& value, const std::string& field) {
   return {};
 }
 
+void read(const nlohmann::json& json, Like& value) {
+  read_member(json, "at", value.at);
+  read_member(json, "by", value.by);
+  read_optional_member(json, "layer", value.layer);
+  read_optional_member(json, "look", value.look);
+  read_member(json, "tolerance", value.tolerance);
+  read_optional_member(json, "contiguous", value.contiguous);
+  read_optional_member(json, "radius_mm", value.radius_mm);
+}
+
+nlohmann::json to_json(const Like& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "at", value.at);
+  write_member(json, "by", value.by);
+  write_optional_member(json, "layer", value.layer);
+  write_optional_member(json, "look", value.look);
+  write_member(json, "tolerance", value.tolerance);
+  write_member(json, "contiguous", value.contiguous);
+  write_optional_member(json, "radius_mm", value.radius_mm);
+  return json;
+}
+
+Result<void> check(const Like& value, const std::string& field) {
+  if (auto ok = check(value.at, join_field(field, "at")); !ok) return ok;
+  return {};
+}
+
 void read(const nlohmann::json& json, Within& value) {
+  read_optional_member(json, "like", value.like);
   read_optional_member(json, "at", value.at);
   read_optional_member(json, "radius_mm", value.radius_mm);
   read_optional_member(json, "camera", value.camera);
   read_optional_member(json, "path", value.path);
   read_optional_member(json, "through", value.through);
   read_optional_member(json, "steps", value.steps);
+  read_optional_member(json, "parts", value.parts);
+  read_optional_member(json, "where", value.where);
+  read_optional_member(json, "selection", value.selection);
+  read_optional_member(json, "grow_mm", value.grow_mm);
+  read_optional_member(json, "smooth_mm", value.smooth_mm);
 }
 
 nlohmann::json to_json(const Within& value) {
   nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "like", value.like);
   write_optional_member(json, "at", value.at);
   write_optional_member(json, "radius_mm", value.radius_mm);
   write_optional_member(json, "camera", value.camera);
   write_optional_member(json, "path", value.path);
   write_optional_member(json, "through", value.through);
   write_optional_member(json, "steps", value.steps);
+  write_optional_member(json, "parts", value.parts);
+  write_optional_member(json, "where", value.where);
+  write_optional_member(json, "selection", value.selection);
+  write_optional_member(json, "grow_mm", value.grow_mm);
+  write_optional_member(json, "smooth_mm", value.smooth_mm);
   return json;
 }
 
 Result<void> check(const Within& value, const std::string& field) {
+  if (auto ok = value.like ? check(*value.like, join_field(field, "like")) : Result<void>{}; !ok) return ok;
   if (auto ok = value.at ? check(*value.at, join_field(field, "at")) : Result<void>{}; !ok) return ok;
   if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
   return {};
@@ -3771,24 +4096,6 @@ nlohmann::json to_json(const KeyStatistics& value) {
   write_member(json, "bounds", value.bounds);
   write_optional_member(json, "pieces", value.pieces);
   write_optional_member(json, "perimeter_m", value.perimeter_m);
-  return json;
-}
-
-void read(const nlohmann::json& json, Quantiles& value) {
-  read_member(json, "p5", value.p5);
-  read_member(json, "p25", value.p25);
-  read_member(json, "p50", value.p50);
-  read_member(json, "p75", value.p75);
-  read_member(json, "p95", value.p95);
-}
-
-nlohmann::json to_json(const Quantiles& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "p5", value.p5);
-  write_member(json, "p25", value.p25);
-  write_member(json, "p50", value.p50);
-  write_member(json, "p75", value.p75);
-  write_member(json, "p95", value.p95);
   return json;
 }
 
@@ -3948,22 +4255,6 @@ Result<void> check(const CrossTableRequest& value, const std::string& field) {
   return {};
 }
 
-void read(const nlohmann::json& json, CrossTable& value) {
-  read_member(json, "rows", value.rows);
-  read_member(json, "columns", value.columns);
-  read_member(json, "area_m2", value.area_m2);
-  read_member(json, "texels", value.texels);
-}
-
-nlohmann::json to_json(const CrossTable& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "rows", value.rows);
-  write_member(json, "columns", value.columns);
-  write_member(json, "area_m2", value.area_m2);
-  write_member(json, "texels", value.texels);
-  return json;
-}
-
 void read(const nlohmann::json& json, Extent& value) {
   read_member(json, "records", value.records);
   read_member(json, "painted", value.painted);
@@ -4039,6 +4330,70 @@ nlohmann::json to_json(const FigureLabels& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, RolloutAxis& value) {
+  read_member(json, "point", value.point);
+  read_member(json, "direction", value.direction);
+}
+
+nlohmann::json to_json(const RolloutAxis& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "point", value.point);
+  write_member(json, "direction", value.direction);
+  return json;
+}
+
+void read(const nlohmann::json& json, RolloutRequest& value) {
+  read_optional_member(json, "axis", value.axis);
+  read_optional_member(json, "shape", value.shape);
+  read_optional_member(json, "radius", value.radius);
+  read_optional_member(json, "half_angle", value.half_angle);
+  read_optional_member(json, "side", value.side);
+  read_optional_member(json, "cut", value.cut);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "looks", value.looks);
+  read_optional_member(json, "relief", value.relief);
+  read_optional_member(json, "at", value.at);
+  read_optional_member(json, "mm_per_pixel", value.mm_per_pixel);
+}
+
+nlohmann::json to_json(const RolloutRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "axis", value.axis);
+  write_optional_member(json, "shape", value.shape);
+  write_optional_member(json, "radius", value.radius);
+  write_optional_member(json, "half_angle", value.half_angle);
+  write_optional_member(json, "side", value.side);
+  write_optional_member(json, "cut", value.cut);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "looks", value.looks);
+  write_member(json, "relief", value.relief);
+  write_optional_member(json, "at", value.at);
+  write_optional_member(json, "mm_per_pixel", value.mm_per_pixel);
+  return json;
+}
+
+void read(const nlohmann::json& json, FigureRollout& value) {
+  read_optional_member(json, "axis", value.axis);
+  read_optional_member(json, "shape", value.shape);
+  read_optional_member(json, "radius", value.radius);
+  read_optional_member(json, "half_angle", value.half_angle);
+  read_optional_member(json, "side", value.side);
+  read_optional_member(json, "cut", value.cut);
+  read_optional_member(json, "relief", value.relief);
+}
+
+nlohmann::json to_json(const FigureRollout& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "axis", value.axis);
+  write_optional_member(json, "shape", value.shape);
+  write_optional_member(json, "radius", value.radius);
+  write_optional_member(json, "half_angle", value.half_angle);
+  write_optional_member(json, "side", value.side);
+  write_optional_member(json, "cut", value.cut);
+  write_member(json, "relief", value.relief);
+  return json;
+}
+
 void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "view", value.view);
   read_optional_member(json, "camera", value.camera);
@@ -4046,6 +4401,7 @@ void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "looks", value.looks);
   read_optional_member(json, "light", value.light);
   read_optional_member(json, "at", value.at);
+  read_optional_member(json, "rollout", value.rollout);
   read_optional_member(json, "direction", value.direction);
   read_optional_member(json, "normal", value.normal);
   read_optional_member(json, "center", value.center);
@@ -4071,6 +4427,7 @@ nlohmann::json to_json(const FigureRequest& value) {
   write_optional_member(json, "looks", value.looks);
   write_optional_member(json, "light", value.light);
   write_optional_member(json, "at", value.at);
+  write_optional_member(json, "rollout", value.rollout);
   write_optional_member(json, "direction", value.direction);
   write_optional_member(json, "normal", value.normal);
   write_optional_member(json, "center", value.center);
@@ -4176,6 +4533,48 @@ nlohmann::json to_json(const SnapshotPatch& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, SavedSelectionCreate& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "text", value.text);
+  read_optional_member(json, "audience", value.audience);
+  read_member(json, "within", value.within);
+}
+
+nlohmann::json to_json(const SavedSelectionCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "text", value.text);
+  write_member(json, "audience", value.audience);
+  write_member(json, "within", value.within);
+  return json;
+}
+
+Result<void> check(const SavedSelectionCreate& value, const std::string& field) {
+  if (auto ok = check(value.within, join_field(field, "within")); !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, SavedSelectionPatch& value) {
+  read_optional_member(json, "name", value.name);
+  read_optional_member(json, "text", value.text);
+  read_optional_member(json, "audience", value.audience);
+  read_optional_member(json, "within", value.within);
+}
+
+nlohmann::json to_json(const SavedSelectionPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "name", value.name);
+  write_optional_member(json, "text", value.text);
+  write_optional_member(json, "audience", value.audience);
+  write_optional_member(json, "within", value.within);
+  return json;
+}
+
+Result<void> check(const SavedSelectionPatch& value, const std::string& field) {
+  if (auto ok = value.within ? check(*value.within, join_field(field, "within")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
 std::optional<Schema> client_message_schema(std::string_view op) {
   if (op == Hello::kOp) return Schema::Hello;
   if (op == CameraUpdate::kOp) return Schema::CameraUpdate;
@@ -4268,6 +4667,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == CommentEvent::kOp) return Schema::CommentEvent;
   if (op == ViewEvent::kOp) return Schema::ViewEvent;
   if (op == SnapshotEvent::kOp) return Schema::SnapshotEvent;
+  if (op == SelectionEvent::kOp) return Schema::SelectionEvent;
   if (op == Moved::kOp) return Schema::Moved;
   if (op == DatabaseState::kOp) return Schema::DatabaseState;
   if (op == Presence::kOp) return Schema::Presence;
@@ -4332,6 +4732,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == SnapshotEvent::kOp) {
     read(json, value.emplace<SnapshotEvent>());
+    return;
+  }
+  if (op == SelectionEvent::kOp) {
+    read(json, value.emplace<SelectionEvent>());
     return;
   }
   if (op == Moved::kOp) {

@@ -150,6 +150,7 @@ enum class Schema {
   CommentEvent,
   ViewEvent,
   SnapshotEvent,
+  SelectionEvent,
   Moved,
   DatabaseState,
   PresencePointer,
@@ -224,6 +225,10 @@ enum class Schema {
   Survey,
   SurveyedObject,
   ObjectList,
+  SurveyClass,
+  SurveyLayerStatistics,
+  SurveyStatistics,
+  ObjectStatistics,
   ObjectName,
   ObjectCreate,
   ObjectPatch,
@@ -232,6 +237,11 @@ enum class Schema {
   CleanupReport,
   Cleanup,
   PieceRecords,
+  LayerChangesRequest,
+  ClassArea,
+  ChangedPieces,
+  ChangedPiece,
+  LayerChanges,
   TransferReport,
   TransferredLayer,
   Transfer,
@@ -339,6 +349,8 @@ enum class Schema {
   PositionsResponse,
   PickRequest,
   At,
+  Like,
+  WithinPart,
   Within,
   SelectionPicture,
   StatisticsPart,
@@ -354,12 +366,20 @@ enum class Schema {
   SectionMeasures,
   CrossTableRequest,
   CrossTable,
+  Agreement,
+  ClassAgreement,
   Extent,
   LayerHighlight,
   FrameRequest,
   FigureFormat,
   FigureDirection,
   FigureLabels,
+  RolloutAxis,
+  RolloutSide,
+  RolloutShape,
+  RolloutRequest,
+  RolloutSheet,
+  FigureRollout,
   FigureRequest,
   JobFile,
   ColumnClass,
@@ -376,9 +396,14 @@ enum class Schema {
   SnapshotList,
   SnapshotCreate,
   SnapshotPatch,
+  SelectionAudience,
+  SavedSelection,
+  SavedSelectionList,
+  SavedSelectionCreate,
+  SavedSelectionPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 352;
+constexpr int kSchemaCount = 377;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1441,6 +1466,24 @@ nlohmann::json to_json(const SnapshotEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<SnapshotEvent> = Schema::SnapshotEvent;
 
+enum class SelectionEventEvent { created, changed, deleted };
+std::string_view name(SelectionEventEvent value);
+void read(const nlohmann::json& json, SelectionEventEvent& value);
+nlohmann::json to_json(const SelectionEventEvent& value);
+
+// A saved selection was created, changed or deleted. The server sends this message for saved selections of the model that the participant can see. A selection that becomes personal counts as deleted for all other users. Clients that show a list of selections should read the selection again.
+struct SelectionEvent {
+  static constexpr std::string_view kOp = "selection";
+  SelectionEventEvent event{};
+  std::int64_t selection = 0;  // Id of the selection.
+  std::optional<std::string> user;
+  bool operator==(const SelectionEvent&) const = default;
+};
+void read(const nlohmann::json& json, SelectionEvent& value);
+nlohmann::json to_json(const SelectionEvent& value);
+template <>
+inline constexpr Schema kSchemaOf<SelectionEvent> = Schema::SelectionEvent;
+
 // Another node has the model. The last message of a connection, if the site has several nodes. The server then closes the connection with the code 4307. The client should connect again at once, and send the edits that are not durable again with the same ids.
 struct Moved {
   static constexpr std::string_view kOp = "moved";
@@ -1736,7 +1779,7 @@ template <>
 inline constexpr Schema kSchemaOf<GroupPatch> = Schema::GroupPatch;
 
 // Kind of the changed item.
-enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, records, comment, member, project, snapshot };
+enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, records, comment, member, project, snapshot, selection };
 std::string_view name(ActivityKind value);
 void read(const nlohmann::json& json, ActivityKind& value);
 nlohmann::json to_json(const ActivityKind& value);
@@ -1816,6 +1859,20 @@ nlohmann::json to_json(const ModelPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ModelPatch> = Schema::ModelPatch;
 
+// The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Present if requested and if the total area is not 0.
+struct Quantiles {
+  double p5 = 0;
+  double p25 = 0;
+  double p50 = 0;
+  double p75 = 0;
+  double p95 = 0;
+  bool operator==(const Quantiles&) const = default;
+};
+void read(const nlohmann::json& json, Quantiles& value);
+nlohmann::json to_json(const Quantiles& value);
+template <>
+inline constexpr Schema kSchemaOf<Quantiles> = Schema::Quantiles;
+
 // New object.
 struct ObjectCreate {
   std::string name;
@@ -1837,7 +1894,7 @@ template <>
 inline constexpr Schema kSchemaOf<ObjectPatch> = Schema::ObjectPatch;
 
 // Operation on the regions of a layer.
-enum class RegionOperation { sieve, fill_holes, majority, border, pieces };
+enum class RegionOperation { sieve, fill_holes, majority, border, open, close, pieces };
 std::string_view name(RegionOperation value);
 void read(const nlohmann::json& json, RegionOperation& value);
 nlohmann::json to_json(const RegionOperation& value);
@@ -1845,19 +1902,25 @@ nlohmann::json to_json(const RegionOperation& value);
 // Result of an operation on the regions of a layer.
 struct CleanupReport {
   RegionOperation operation{};
-  bool applied = false;  // false: this was a preview, or there was nothing to change.
+  // false: no texel was changed: this was a preview, there was nothing to change, or all texels
+  // were edited in the meantime.
+  bool applied = false;
   // Number of regions that change: for sieve and fill-holes, the regions with a new value; for
-  // pieces, the new records. 0 for majority and border.
+  // pieces, the new records. 0 for the other operations, and if an edit changed no texel.
   std::int64_t regions = 0;
   // Number of texels that change. In a preview, the number that would change.
   std::int64_t texels = 0;
   double area_m2 = 0;  // Area of these texels.
   // Number of texels that stay as they are, because they were edited while the result was computed.
+  // Unknown (0) for a repeated call after a restart of the server.
   std::optional<std::int64_t> skipped_texels;
   std::optional<std::int64_t> sequence;  // Sequence of the edit. Absent if there was no edit.
   std::optional<bool> provisional;  // true: the edit waits for review.
   // For pieces: the keys of the new records, the largest piece first.
   std::optional<std::vector<std::int64_t>> keys;
+  // For pieces: those of `keys` whose records have no texels, because other users painted their
+  // pieces completely in the meantime.
+  std::optional<std::vector<std::int64_t>> unpainted_keys;
   bool operator==(const CleanupReport&) const = default;
 };
 void read(const nlohmann::json& json, CleanupReport& value);
@@ -1876,6 +1939,119 @@ void read(const nlohmann::json& json, JobFile& value);
 nlohmann::json to_json(const JobFile& value);
 template <>
 inline constexpr Schema kSchemaOf<JobFile> = Schema::JobFile;
+
+// Piece that appeared or vanished.
+struct ChangedPiece {
+  double value = 0;
+  double area_m2 = 0;
+  // A place in the piece, in world coordinates and the unit of the model of the request.
+  glm::dvec3 at{0};
+  bool operator==(const ChangedPiece&) const = default;
+};
+void read(const nlohmann::json& json, ChangedPiece& value);
+nlohmann::json to_json(const ChangedPiece& value);
+template <>
+inline constexpr Schema kSchemaOf<ChangedPiece> = Schema::ChangedPiece;
+
+// Connected areas of one value that overlap nothing painted in the other survey.
+struct ChangedPieces {
+  std::vector<ChangedPiece> pieces;  // The 1000 largest, the largest first.
+  std::int64_t total = 0;  // Number of all pieces.
+  double area_m2 = 0;  // Area of all pieces.
+  bool operator==(const ChangedPieces&) const = default;
+};
+void read(const nlohmann::json& json, ChangedPieces& value);
+nlohmann::json to_json(const ChangedPieces& value);
+template <>
+inline constexpr Schema kSchemaOf<ChangedPieces> = Schema::ChangedPieces;
+
+// Area of a value.
+struct ClassArea {
+  double value = 0;
+  double area_m2 = 0;
+  bool operator==(const ClassArea&) const = default;
+};
+void read(const nlohmann::json& json, ClassArea& value);
+nlohmann::json to_json(const ClassArea& value);
+template <>
+inline constexpr Schema kSchemaOf<ClassArea> = Schema::ClassArea;
+
+// Agreement about one class.
+struct ClassAgreement {
+  std::optional<double> key;  // Null: not painted.
+  double area_both_m2 = 0;  // The area of the class in both layers.
+  // The area of the class in the layer of the rows, also outside the other layer.
+  double area_first_m2 = 0;
+  // The area of the class in the layer of the columns, also outside the other layer.
+  double area_second_m2 = 0;
+  double iou = 0;  // Intersection over union (Jaccard index).
+  double f1 = 0;  // F1 score (Dice coefficient).
+  bool operator==(const ClassAgreement&) const = default;
+};
+void read(const nlohmann::json& json, ClassAgreement& value);
+nlohmann::json to_json(const ClassAgreement& value);
+template <>
+inline constexpr Schema kSchemaOf<ClassAgreement> = Schema::ClassAgreement;
+
+// Agreement of two observers. Compares two layers with the same classes, weighted by true surface area. The compared surface is the whole surface of the model, or the part that the request selects. Not painted counts as a class.
+struct Agreement {
+  double area_m2 = 0;  // The compared area, including the area where neither layer is painted.
+  double observed = 0;  // Share of the compared area where both layers have the same class.
+  // The same share if the layers had their areas of classes, but were independent of each other.
+  double expected = 0;
+  // Cohen's kappa: (observed - expected) / (1 - expected). It is 1 for equal layers and about 0 for
+  // independent ones. Null if both layers have the same single class everywhere.
+  std::optional<double> kappa;
+  // Like observed, for the area where at least one layer is painted. Null if there is no such area.
+  std::optional<double> observed_painted;
+  // The classes with an area in at least one layer, in ascending order of their keys. Not painted
+  // is last.
+  std::vector<ClassAgreement> classes;
+  bool operator==(const Agreement&) const = default;
+};
+void read(const nlohmann::json& json, Agreement& value);
+nlohmann::json to_json(const Agreement& value);
+template <>
+inline constexpr Schema kSchemaOf<Agreement> = Schema::Agreement;
+
+// Areas of each pair of values. The keys are in ascending order. The last key is null, for texels where the layer has no value.
+struct CrossTable {
+  std::vector<std::optional<double>> rows;
+  std::vector<std::optional<double>> columns;
+  // One array for each row, with one number for each column.
+  std::vector<std::vector<double>> area_m2;
+  std::vector<std::vector<std::int64_t>> texels;
+  // Absent if the layers do not have the same classes, or if the compared surface has no area.
+  std::optional<Agreement> agreement;
+  bool operator==(const CrossTable&) const = default;
+};
+void read(const nlohmann::json& json, CrossTable& value);
+nlohmann::json to_json(const CrossTable& value);
+template <>
+inline constexpr Schema kSchemaOf<CrossTable> = Schema::CrossTable;
+
+// What became of the classes of a layer since another survey.
+struct LayerChanges {
+  std::int64_t since = 0;  // Id of the other model.
+  std::int64_t layer = 0;  // Id of the layer of the other model.
+  double area_m2 = 0;  // Surface area of the model of the request.
+  // The part of `area_m2` for which the other model has a surface within the tolerance.
+  double matched_m2 = 0;
+  // Rows: values in the other survey. Columns: values on the model of the request. Areas of this
+  // model, where the other model has a surface.
+  CrossTable table;
+  // Painted areas of this model where the other model has no surface within the tolerance.
+  std::vector<ClassArea> unmatched_now;
+  // Painted areas of the other model where this model has no surface within the tolerance.
+  std::vector<ClassArea> unmatched_then;
+  ChangedPieces appeared;  // Pieces of this model.
+  ChangedPieces vanished;  // Pieces of the other model.
+  bool operator==(const LayerChanges&) const = default;
+};
+void read(const nlohmann::json& json, LayerChanges& value);
+nlohmann::json to_json(const LayerChanges& value);
+template <>
+inline constexpr Schema kSchemaOf<LayerChanges> = Schema::LayerChanges;
 
 // Layer in a transfer.
 struct TransferredLayer {
@@ -1930,6 +2106,7 @@ struct Job {
   std::optional<std::int64_t> look;  // Id of the surface image that the job created on the model.
   std::optional<TransferReport> report;
   std::optional<CleanupReport> cleanup;
+  std::optional<LayerChanges> changes;
   std::optional<JobFile> file;
   bool operator==(const Job&) const = default;
 };
@@ -1938,7 +2115,7 @@ nlohmann::json to_json(const Job& value);
 template <>
 inline constexpr Schema kSchemaOf<Job> = Schema::Job;
 
-enum class CleanupOperation { sieve, fill_holes, majority, border };
+enum class CleanupOperation { sieve, fill_holes, majority, border, open, close };
 std::string_view name(CleanupOperation value);
 void read(const nlohmann::json& json, CleanupOperation& value);
 nlohmann::json to_json(const CleanupOperation& value);
@@ -1948,22 +2125,28 @@ struct Cleanup {
   // sieve: regions smaller than `area_cm2` get the value of the neighbor with the longest common
   // border. fill-holes: regions without a value that are smaller than `area_cm2` and enclosed by
   // one value get this value. majority: each texel gets the value with the largest area within
-  // `radius_mm`. border: the border of regions is painted as a line that is `width_mm` wide.
+  // `radius_mm`. border: the border of regions is painted as a line that is `width_mm` wide. open:
+  // parts of the regions that are narrower than `width_mm` get the nearest other value, or become
+  // unpainted. close: gaps of the regions that are narrower than `width_mm` get the value of the
+  // regions, also where they have another value.
   CleanupOperation operation{};
   // For sieve and fill-holes: regions of this area or larger stay unchanged.
   std::optional<double> area_cm2;
   bool erase_regions = false;  // For sieve: true: small regions become unpainted instead.
-  std::optional<double> radius_mm;  // For majority: at most 40 texels of the layer (422).
-  // For border: the width of the line. The line is at least one texel wide.
+  // For majority: at most 40 texels of the layer, and less if the layer has many borders (422).
+  std::optional<double> radius_mm;
+  // Along the surface. For border: the width of the line, which is at least one texel wide. For
+  // open and close: the width of parts and gaps.
   std::optional<double> width_mm;
   // For border: the layer with the regions, with the same resolution. Default: the layer itself.
   std::optional<LayerRef> from;
-  // For border: the value of the regions. Default: the borders between all values.
+  // For border, open and close: the value of the regions. Default: for border, the borders between
+  // all values; for open and close, the only value of the layer (422 if it has several).
   std::optional<double> of;
-  // For border with `of`: true: the line lies completely inside the regions. false: half of it lies
-  // on each side.
+  // For border with `of`: true: the line is completely inside the regions. false: half of it is on
+  // each side.
   bool inside = false;
-  std::optional<double> value;  // For border: the value of the line.
+  std::optional<double> value;  // For border without `erase`: the value of the line.
   bool erase = false;  // For border: true: erase along the line.
   bool apply = true;  // false: only count what would change.
   bool operator==(const Cleanup&) const = default;
@@ -1991,6 +2174,25 @@ void read(const nlohmann::json& json, PieceRecords& value);
 nlohmann::json to_json(const PieceRecords& value);
 template <>
 inline constexpr Schema kSchemaOf<PieceRecords> = Schema::PieceRecords;
+
+// Comparison of a layer with the layer of another survey.
+struct LayerChangesRequest {
+  // Id or slug of the other model, which is usually an earlier survey of the same object. Both
+  // models must use the same coordinate system.
+  std::string since;
+  // Id or slug of the layer of the other model. Default: the layer with the same name.
+  std::optional<std::string> layer;
+  // Maximum distance between the two surfaces in millimeters. Places farther from the other surface
+  // have no counterpart.
+  double tolerance_mm = 0;
+  double max_angle = 60;  // Maximum angle between the two surfaces in degrees.
+  double min_area_cm2 = 0;  // Smaller pieces are neither listed nor counted.
+  bool operator==(const LayerChangesRequest&) const = default;
+};
+void read(const nlohmann::json& json, LayerChangesRequest& value);
+nlohmann::json to_json(const LayerChangesRequest& value);
+template <>
+inline constexpr Schema kSchemaOf<LayerChangesRequest> = Schema::LayerChangesRequest;
 
 // Transfer of layers from another version of the same scan.
 struct Transfer {
@@ -2263,25 +2465,39 @@ nlohmann::json to_json(const TemplateUse& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateUse> = Schema::TemplateUse;
 
-enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, vertex_property };
+enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, change, level_of_detection, significant_change, vertex_property };
 std::string_view name(ShapeRecipeKind value);
 void read(const nlohmann::json& json, ShapeRecipeKind& value);
 nlohmann::json to_json(const ShapeRecipeKind& value);
 
 // Values that are computed from the shape of the model. The response is a job. The layer exists when the job is finished. If unit, palette or description are absent, the server derives them from the recipe.
 struct ShapeRecipe {
+  // change: the signed M3C2 distance (Lague, Brodu and Leroux 2013) since the other model, in mm;
+  // level_of_detection: the smallest change that noise and alignment cannot explain, at 95 %, in
+  // mm; significant_change: 0 where the change is within the level of detection, 1 for a gain, 2
+  // for a loss of material.
   ShapeRecipeKind kind{};
   // For curvature and roughness, the radius of the neighborhood. Default: the length of four edges
   // of the mesh.
   std::optional<double> radius_mm;
-  // For ambient occlusion and model distance, the maximum search distance. Default: a quarter of
-  // the model's diagonal for ambient occlusion, and a tenth for model distance.
+  // For ambient occlusion, model distance and changes, the maximum search distance. Default: a
+  // quarter of the model's diagonal for ambient occlusion, and a tenth for the others, but at most
+  // 50 projection scales for changes.
   std::optional<double> distance_mm;
+  // For changes, the diameter of the neighborhood whose mean normal is the direction of
+  // measurement. Default: twice the projection scale.
+  std::optional<double> normal_scale_mm;
+  // For changes, the diameter of the cylinder in which both surfaces are averaged. Default: the
+  // length of eight edges of the coarser mesh.
+  std::optional<double> projection_scale_mm;
+  // For changes, the standard error of the alignment of the two models. Default: 0.
+  std::optional<double> registration_mm;
   // For ambient occlusion, the number of rays for each point. Default: 64.
   std::optional<int> rays;
   // For height, true: use the world coordinate instead of the height above the lowest point.
   bool absolute = false;
-  std::optional<std::string> model;  // For model distance, the id or slug of the other model.
+  // For model distance and changes, the id or slug of the other model.
+  std::optional<std::string> model;
   // For a vertex property, its name in the PLY file, such as quality.
   std::optional<std::string> property;
   // For a vertex property, the source file. Required if several files contain the property.
@@ -2332,8 +2548,9 @@ struct LayerCreate {
   std::optional<std::vector<ColumnCreate>> columns;
   std::optional<ShapeRecipe> compute;
   // For a computed layer, a formula or a condition. A condition results in the value 1 where it is
-  // true and no value elsewhere. The expression can use layers, their records and the surface (x,
-  // y, z, nx, ny, nz, height, slope, curvature, area).
+  // true and no value elsewhere. The expression can use layers, their records, the surface (x, y,
+  // z, nx, ny, nz, height, slope, curvature, area), and functions along the surface (distance,
+  // within, nearest, focal_mean, focal_min, focal_max, focal_variety).
   std::optional<std::string> expression;
   std::optional<Recompute> recompute;  // Only with `expression`. Default: manual.
   bool operator==(const LayerCreate&) const = default;
@@ -2858,8 +3075,40 @@ Result<void> check(const PickRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<PickRequest> = Schema::PickRequest;
 
-// Part of the surface. Either the surface around a point, or the visible surface inside an outline in the window of a camera. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance.
+enum class LikeBy { color, normal, value };
+std::string_view name(LikeBy value);
+void read(const nlohmann::json& json, LikeBy& value);
+nlohmann::json to_json(const LikeBy& value);
+
+// Surface that looks like the surface at a point. The surface whose color, normal or value differs from that at the point by at most `tolerance`. The value at the point is a mean over 3 × 3 texels. A texel belongs to the selection if its own value or the mean around it is within the tolerance. Keys and values of a categorical palette are not averaged. Texels without a value are similar only to each other.
+struct Like {
+  SurfacePlace at;
+  // color: the colors of the surface images that are visible by default, over the colors of the
+  // vertices. normal: the orientation of the surface. value: the values of `layer`.
+  LikeBy by{};
+  std::optional<LayerRef> layer;  // The layer for `value`.
+  std::optional<LayerRef> look;  // With `color`: use only this surface image, even if it is hidden.
+  // color: distance in CIELAB (ΔE of 1976); 2 is hardly visible, and the distance from black to
+  // white is 100. normal: angle in degrees. value: difference of values.
+  double tolerance = 0;
+  // true: only surface that is connected to the point through similar surface. false: all similar
+  // surface that is connected to the point within `radius_mm`, or the whole similar surface without
+  // `radius_mm`.
+  bool contiguous = true;
+  // Maximum distance from the point, in a straight line, in millimeters on the object. Default: no
+  // limit.
+  std::optional<double> radius_mm;
+  bool operator==(const Like&) const = default;
+};
+void read(const nlohmann::json& json, Like& value);
+nlohmann::json to_json(const Like& value);
+Result<void> check(const Like& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<Like> = Schema::Like;
+
+// Part of the surface. The surface around a point, the visible surface inside an outline in the window of a camera, the surface that looks like the surface at a point, the surface where a condition is true, a saved selection, or a combination of such parts. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance. Combinations can be nested at most 4 deep and have at most 64 parts that are no combinations, including those of saved selections.
 struct Within {
+  std::optional<Like> like;
   std::optional<SurfacePlace> at;
   std::optional<double> radius_mm;  // In millimeters on the object.
   std::optional<strata::Camera> camera;
@@ -2868,6 +3117,18 @@ struct Within {
   // Further outlines, which are combined with the first one in the given order. All outlines
   // together can have at most 16384 points.
   std::optional<std::vector<OutlineStep>> steps;
+  std::optional<std::vector<nlohmann::json>> parts;  // Parts that are combined in the given order.
+  std::optional<std::string> where;  // A condition over the layers, as in a fill.
+  // Id or slug of a saved selection of the model. The server uses its definition of the moment of
+  // the request.
+  std::optional<LayerRef> selection;
+  // Adds the surface within this distance of the part. If negative, removes the surface within this
+  // distance of the rest of the surface. Distances are measured along the surface, also across
+  // seams of the atlas. The edges of the mesh are no borders of the part.
+  std::optional<double> grow_mm;
+  // After `grow_mm`: first removes the pieces of the part that are narrower than this width, and
+  // then closes the gaps that are narrower (morphological opening and closing).
+  std::optional<double> smooth_mm;
   bool operator==(const Within&) const = default;
 };
 void read(const nlohmann::json& json, Within& value);
@@ -2968,20 +3229,6 @@ void read(const nlohmann::json& json, KeyStatistics& value);
 nlohmann::json to_json(const KeyStatistics& value);
 template <>
 inline constexpr Schema kSchemaOf<KeyStatistics> = Schema::KeyStatistics;
-
-// The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Present if requested and if the total area is not 0.
-struct Quantiles {
-  double p5 = 0;
-  double p25 = 0;
-  double p50 = 0;
-  double p75 = 0;
-  double p95 = 0;
-  bool operator==(const Quantiles&) const = default;
-};
-void read(const nlohmann::json& json, Quantiles& value);
-nlohmann::json to_json(const Quantiles& value);
-template <>
-inline constexpr Schema kSchemaOf<Quantiles> = Schema::Quantiles;
 
 // Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values.
 struct Statistics {
@@ -3113,20 +3360,6 @@ Result<void> check(const CrossTableRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<CrossTableRequest> = Schema::CrossTableRequest;
 
-// Areas of each pair of values. The keys are in ascending order. The last key is null, for texels where the layer has no value.
-struct CrossTable {
-  std::vector<std::optional<double>> rows;
-  std::vector<std::optional<double>> columns;
-  // One array for each row, with one number for each column.
-  std::vector<std::vector<double>> area_m2;
-  std::vector<std::vector<std::int64_t>> texels;
-  bool operator==(const CrossTable&) const = default;
-};
-void read(const nlohmann::json& json, CrossTable& value);
-nlohmann::json to_json(const CrossTable& value);
-template <>
-inline constexpr Schema kSchemaOf<CrossTable> = Schema::CrossTable;
-
 // Extent of records on a model.
 struct Extent {
   std::int64_t records = 0;  // Number of requested records.
@@ -3208,6 +3441,82 @@ nlohmann::json to_json(const FigureLabels& value);
 template <>
 inline constexpr Schema kSchemaOf<FigureLabels> = Schema::FigureLabels;
 
+// Axis of a rollout.
+struct RolloutAxis {
+  glm::dvec3 point{0};  // A point on the axis, in world coordinates.
+  glm::dvec3 direction{0};  // The direction that is up on the sheet. Its length must not be 0.
+  bool operator==(const RolloutAxis&) const = default;
+};
+void read(const nlohmann::json& json, RolloutAxis& value);
+nlohmann::json to_json(const RolloutAxis& value);
+template <>
+inline constexpr Schema kSchemaOf<RolloutAxis> = Schema::RolloutAxis;
+
+// Side of a wall. `outside` is seen from around the model, `inside` from the axis.
+enum class RolloutSide { outside, inside };
+std::string_view name(RolloutSide value);
+void read(const nlohmann::json& json, RolloutSide& value);
+nlohmann::json to_json(const RolloutSide& value);
+
+// Shape of the surface of a rollout.
+enum class RolloutShape { cylinder, cone };
+std::string_view name(RolloutShape value);
+void read(const nlohmann::json& json, RolloutShape& value);
+nlohmann::json to_json(const RolloutShape& value);
+
+// Request for a rollout. A rollout is the surface of a cylinder or cone, unrolled onto a plane without distortion. The server fits all values that are absent.
+struct RolloutRequest {
+  std::optional<RolloutAxis> axis;  // Required for models without a unique axis, such as spheres.
+  std::optional<RolloutShape> shape;  // Default: a cone if it fits clearly better.
+  // Radius at `axis.point`, in units of the model. Only together with `axis`.
+  std::optional<double> radius;
+  // Angle between the axis and the surface of a cone in degrees, positive if the radius grows along
+  // the axis. Only together with `radius`.
+  std::optional<double> half_angle;
+  std::optional<RolloutSide> side;  // Default: the side with the larger area.
+  // Angle of the cut in degrees, counterclockwise from `zero` of the sheet. Default: the middle of
+  // the largest gap of the model, or 180 (the back) if there is no gap.
+  std::optional<double> cut;
+  // Layers that are not listed have their default settings.
+  std::optional<std::vector<LayerOverride>> layers;
+  // The visible surface images from bottom to top. Default: the surface images that are visible by
+  // default.
+  std::optional<std::vector<LookShown>> looks;
+  // Whether to shade the surface where its direction differs from that of the cylinder or cone.
+  bool relief = true;
+  std::optional<At> at;
+  // Width of a pixel on the object. Default: a width with which the longer side of the picture has
+  // 2000 pixels. A picture can have at most 64 million pixels, and 1 million on one side (413).
+  std::optional<double> mm_per_pixel;
+  bool operator==(const RolloutRequest&) const = default;
+};
+void read(const nlohmann::json& json, RolloutRequest& value);
+nlohmann::json to_json(const RolloutRequest& value);
+template <>
+inline constexpr Schema kSchemaOf<RolloutRequest> = Schema::RolloutRequest;
+
+// Rollout in a figure. The members have the same meaning as in `RolloutRequest`. The outline of the surface has rulers: degrees around the axis, from 0 to 360, and lengths along the axis or, for a cone, along the slant. Lengths begin at `axis.point` or, without `axis`, at the lower edge.
+struct FigureRollout {
+  std::optional<RolloutAxis> axis;  // Required for models without a unique axis, such as spheres.
+  std::optional<RolloutShape> shape;  // Default: a cone if it fits clearly better.
+  // Radius at `axis.point`, in units of the model. Only together with `axis`.
+  std::optional<double> radius;
+  // Angle between the axis and the surface of a cone in degrees, positive if the radius grows along
+  // the axis. Only together with `radius`.
+  std::optional<double> half_angle;
+  std::optional<RolloutSide> side;  // Default: the side with the larger area.
+  // Angle of the cut in degrees, counterclockwise around the axis from the front of the model.
+  // Default: the middle of the largest gap of the model, or 180 (the back) if there is no gap.
+  std::optional<double> cut;
+  // Whether to shade the surface where its direction differs from that of the cylinder or cone.
+  bool relief = true;
+  bool operator==(const FigureRollout&) const = default;
+};
+void read(const nlohmann::json& json, FigureRollout& value);
+nlohmann::json to_json(const FigureRollout& value);
+template <>
+inline constexpr Schema kSchemaOf<FigureRollout> = Schema::FigureRollout;
+
 enum class FigureRequestPaper { a5, a4, a3 };
 std::string_view name(FigureRequestPaper value);
 void read(const nlohmann::json& json, FigureRequestPaper& value);
@@ -3230,6 +3539,10 @@ struct FigureRequest {
   std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Default: the light mode museum.
   std::optional<At> at;
+  // Unrolls the surface of a cylinder or cone instead of drawing the model from a direction. Not
+  // together with `camera`, `light`, `direction`, `normal`, `center` or `labels`. Of a saved view,
+  // the figure uses only the layers and surface images.
+  std::optional<FigureRollout> rollout;
   // A standard direction instead of the direction of the camera or view.
   std::optional<FigureDirection> direction;
   // A normal in world coordinates, instead of a direction. A surface with this normal is drawn
@@ -3338,13 +3651,47 @@ nlohmann::json to_json(const SnapshotPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<SnapshotPatch> = Schema::SnapshotPatch;
 
+// Users who can see and use a saved selection. personal: only its creator. everyone: all users who can see the model.
+enum class SelectionAudience { personal, everyone };
+std::string_view name(SelectionAudience value);
+void read(const nlohmann::json& json, SelectionAudience& value);
+nlohmann::json to_json(const SelectionAudience& value);
+
+// New saved selection.
+struct SavedSelectionCreate {
+  std::string name;
+  std::optional<std::string> text;  // Plain text.
+  SelectionAudience audience = SelectionAudience::personal;
+  Within within;
+  bool operator==(const SavedSelectionCreate&) const = default;
+};
+void read(const nlohmann::json& json, SavedSelectionCreate& value);
+nlohmann::json to_json(const SavedSelectionCreate& value);
+Result<void> check(const SavedSelectionCreate& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<SavedSelectionCreate> = Schema::SavedSelectionCreate;
+
+// Changes to a saved selection.
+struct SavedSelectionPatch {
+  std::optional<std::string> name;
+  std::optional<std::string> text;  // Plain text.
+  std::optional<SelectionAudience> audience;
+  std::optional<Within> within;
+  bool operator==(const SavedSelectionPatch&) const = default;
+};
+void read(const nlohmann::json& json, SavedSelectionPatch& value);
+nlohmann::json to_json(const SavedSelectionPatch& value);
+Result<void> check(const SavedSelectionPatch& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<SavedSelectionPatch> = Schema::SavedSelectionPatch;
+
 using ClientMessage = std::variant<Hello, CameraUpdate, LayersUpdate, StrokeBegin, StrokeExtend, StrokeEnd, EditRequest, Undo, Redo, RecordEdit, Ack, PresenceUpdate, Pick>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, ViewEvent, SnapshotEvent, Moved, DatabaseState, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, ViewEvent, SnapshotEvent, SelectionEvent, Moved, DatabaseState, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);
