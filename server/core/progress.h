@@ -14,6 +14,8 @@ namespace strata {
 // `cancelled()` becomes true, the worker soon returns `cancelled_problem()`. Thread-safe.
 class Progress {
  public:
+  virtual ~Progress() = default;
+
   // Maps later reports to the part [from, to] of the whole task. So the code of a step does not
   // depend on its position in the task.
   void begin_stage(double from, double to) {
@@ -39,7 +41,8 @@ class Progress {
   void set_job(JobId job) { job_ = job; }  // call before the work begins
 
   void cancel() { cancelled_ = true; }
-  bool cancelled() const { return cancelled_; }
+  // Tests override it to cancel at a chosen place.
+  virtual bool cancelled() const { return cancelled_; }
 
  private:
   mutable std::mutex mutex_;

@@ -36,4 +36,9 @@ bool reads_records(const Expression& expression) {
   return expression.is_column() || std::ranges::any_of(expression.parts, reads_records);
 }
 
+bool has_surface_function(const Expression& expression) {
+  return expression.is_surface_function() ||
+         std::ranges::any_of(expression.parts, has_surface_function);
+}
+
 }  // namespace strata

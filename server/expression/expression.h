@@ -52,6 +52,14 @@ struct Expression {
     y,               //
     z,               //
     area,            // of the texel, in m²
+    // Along the surface (expression/surface_functions), up to the distance `number` in model units;
+    // infinity if there is no limit.
+    distance,       // from the nearest texel where the part, a condition, is true
+    nearest,        // takes a number: its value at the nearest texel where it is known
+    focal_mean,     // of a number at the texels around, like the next three
+    focal_min,      //
+    focal_max,      //
+    focal_variety,  // the number of different values
     // The number at `index` of the values that are read from records (expression/record_parts), for
     // the key in the layer `name`.
     record_number,
@@ -115,6 +123,7 @@ struct Expression {
   bool is_condition() const { return op >= Op::truth; }
   bool is_text() const { return op == Op::text || op == Op::fold_case || op == Op::fold_accents; }
   bool is_column() const { return op == Op::column; }
+  bool is_surface_function() const { return op >= Op::distance && op <= Op::focal_variety; }
   bool operator==(const Expression&) const = default;
 };
 
@@ -146,5 +155,8 @@ std::vector<std::string> layers_of(const Expression& expression);
 
 // Returns whether the expression reads a column of a record.
 bool reads_records(const Expression& expression);
+
+// Returns whether the expression contains a function along the surface.
+bool has_surface_function(const Expression& expression);
 
 }  // namespace strata

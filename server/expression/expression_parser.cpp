@@ -13,6 +13,7 @@
 #include "core/text/timestamp.h"
 #include "core/text/utf8.h"
 #include "expression/operators.h"
+#include "expression/surface_functions.h"
 
 namespace strata::query {
 namespace {
@@ -93,16 +94,21 @@ class Parser {
       refuse(what);
       return;
     }
-    if (number_end_ > 0 && std::ranges::find(kUnits, word) != kUnits.end() &&
-        std::ranges::all_of(text_.substr(number_end_, token_.at - number_end_), is_space)) {
-      const std::string number(text_.substr(number_at_, number_end_ - number_at_));
-      refuse_part(
-          "Write numbers without a unit. '" + number + "' has the unit of the layer or column",
-          position(number_at_, at_), mistake::kUnit, {number});
-      return;
-    }
+    if (refuse_unit("layer or column")) return;
     refuse_part(what, position(token_.at, at_), mistake::kSyntax,
                 closest_names(word, kJoiningWords));
+  }
+
+  // Refuses a unit after the last number. `what` has the unit that the number has.
+  bool refuse_unit(const std::string& what) {
+    if (number_end_ == 0 || token_.kind != Token::Kind::word ||
+        std::ranges::find(kUnits, token_.text) == kUnits.end() ||
+        !std::ranges::all_of(text_.substr(number_end_, token_.at - number_end_), is_space))
+      return false;
+    const std::string number(text_.substr(number_at_, number_end_ - number_at_));
+    refuse_part("Write numbers without a unit. '" + number + "' has the unit of the " + what,
+                position(number_at_, at_), mistake::kUnit, {number});
+    return true;
   }
 
   Expression::Position position(std::size_t begin_byte, std::size_t end_byte) const {
@@ -449,6 +455,9 @@ class Parser {
     if (is("reclass")) return reclass();
     if (is("date") || is("timestamp")) return time();
     if (is("interval")) return interval();
+    if (is("within")) return within();
+    for (const NamedSurfaceFunction& each : kSurfaceFunctions)
+      if (is(each.name)) return surface_function(each.op, each.needs_limit);
     for (const Operator& each : operators()) {
       if (!is(each.name)) continue;
       switch (each.form) {
@@ -463,15 +472,27 @@ class Parser {
                            "'. Available are valid, if, reclass, " +
                            names_of(Form::number_function) + ", " + names_of(Form::text_function) +
                            ", date, timestamp, interval, " + names_of(Form::time_function) + ", " +
-                           names_of(Form::key_function),
+                           names_of(Form::key_function) + surface_functions(),
                        position(token_.at, at_), mistake::kUnknownFunction,
                        closest_names(token_.text, function_names()));
   }
 
-  static std::vector<std::string> function_names() {
+  // Returns the end of the list of functions: ", distance, …".
+  std::string surface_functions() const {
+    if (names_ == Names::columns) return {};
+    std::string names = ", within";
+    for (const NamedSurfaceFunction& each : kSurfaceFunctions)
+      names += ", " + std::string(each.name);
+    return names;
+  }
+
+  std::vector<std::string> function_names() const {
     std::vector<std::string> names{"valid", "if", "reclass", "date", "timestamp", "interval"};
     for (const Operator& row : operators())
       if (row.form >= Form::number_function) names.emplace_back(row.name);
+    if (names_ == Names::columns) return names;
+    names.emplace_back("within");
+    for (const NamedSurfaceFunction& each : kSurfaceFunctions) names.emplace_back(each.name);
     return names;
   }
 
@@ -526,6 +547,56 @@ class Parser {
     expression.op = Op::valid;
     expect(")");
     return expression;
+  }
+
+  // --- functions along the surface
+
+  Expression within() {
+    const auto at = token_.at;
+    return make(Op::known, at, surface_function(Op::distance, true));
+  }
+
+  Expression surface_function(Op op, bool needs_limit) {
+    const auto at = token_.at;
+    const auto name_end = at_;
+    if (names_ == Names::columns)
+      return refuse_part(
+          "Records have no surface: use this function in a computed layer, and that layer in a "
+          "condition over layers",
+          position(at, name_end), mistake::kComputedLayersOnly);
+    advance();
+    expect("(");
+    const auto part_at = token_.at;
+    Expression part = disjunction();
+    part =
+        op == Op::distance ? source(std::move(part), part_at) : numeric(std::move(part), part_at);
+    Expression function = make(op, at, std::move(part));
+    function.number = std::numeric_limits<double>::infinity();
+    if (needs_limit && !is(",")) refuse("Expected ',' and a distance");
+    if (take(",")) function.number = limit();
+    expect(")");
+    function.position = position(at, name_end);
+    return function;
+  }
+
+  // A layer stands for the places where it has a value.
+  Expression source(Expression expression, std::size_t at) {
+    if (expression.op == Op::layer) {
+      expression.op = Op::valid;
+      return expression;
+    }
+    return condition(std::move(expression), at);
+  }
+
+  double limit() {
+    if (token_.kind != Token::Kind::number) {
+      refuse("Write the distance as a number, such as 20");
+      return 0;
+    }
+    const double number = token_.number;
+    advance();
+    refuse_unit("model");
+    return number;
   }
 
   // --- texts and times

@@ -32,6 +32,10 @@ enum class Names { layers, columns };
 //   date('2024-05-02'), timestamp('…'), interval('1560', '..'), and any EDTF in quotes;
 //   t_before, t_after, t_during, t_contains, t_intersects, t_disjoint, t_equals of two times
 //   a_contains, a_overlaps, a_containedby, a_equals of a relation and (key, key, …)
+//   distance(condition[, limit]), within(condition, limit), nearest(number[, limit]): along the
+//   surface, only in computed layers; a layer in place of the condition means valid(layer);
+//   within(c, d) is the same as distance(c, d) is not null
+//   focal_mean, focal_min, focal_max, focal_variety of (number, radius): likewise
 //
 // Words are case-insensitive. Layers and columns are named by their slugs. `layer.column` is a
 // column of the record whose key the layer holds. `column.column` is a column of the record that a

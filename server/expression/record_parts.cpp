@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "expression/surface_functions.h"
+
 namespace strata::query {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr std::uint32_t kMaxDense = 1u << 16;  // most keys are consecutive; at 
 // the values of a layer, or the records of several layers.
 const std::string* only_record(const Expression& e) {
   const std::string* found = nullptr;
-  if (e.op == Op::layer || e.op == Op::valid) return nullptr;
+  if (e.op == Op::layer || e.op == Op::valid || has_surface_function(e)) return nullptr;
   if (e.is_column()) return &e.name;
   for (const Expression& part : e.parts) {
     if (layers_of(part).empty()) continue;
@@ -43,6 +45,10 @@ class Splitter {
 
  private:
   Expression rewrite(const Expression& e) {
+    if (e.is_surface_function()) {
+      if (!problem_) problem_ = surface_function_problem(e, field_);
+      return {};
+    }
     if (const std::string* layer = only_record(e)) return part(e, *layer);
     const bool of_records =
         e.is_text() || e.op == Op::keys || (e.op >= Op::like && !is_logic(e.op));

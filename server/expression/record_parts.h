@@ -23,7 +23,7 @@ struct SplitExpression {
   std::vector<RecordPart> parts;  // by the `index` in the expression
 };
 // Returns an `invalid` error at `field` if the text or time of a column is combined with anything
-// except its own record.
+// except its own record, and for a function along the surface (separate_surface_functions).
 Result<SplitExpression> split_records(const Expression& expression, const std::string& field);
 
 // Numbers by key. Supports millions of look-ups.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "expression/expression_parser.h"
+#include "expression/surface_functions.h"
 #include "query/conditions/expression_evaluator.h"
 
 namespace {
@@ -28,7 +29,19 @@ std::string call(const char* function, const Expression& expression) {
   return text + ")";
 }
 
+// Returns a call of a function along the surface.
+std::string with_limit(const char* function, const Expression& expression) {
+  std::string text = call(function, expression);
+  if (std::isinf(expression.number)) return text;
+  Expression limit;
+  limit.number = expression.number;
+  text.back() = ',';
+  return text + " " + text_of(limit) + ")";
+}
+
 std::string joined(const char* word, const Expression& expression) {
+  // `a in (1)` has the same text as `a = 1`.
+  if (expression.parts.size() == 1) return text_of(expression.parts[0]);
   std::string text;
   for (const auto& part : expression.parts)
     text += (text.empty() ? "(" : std::string(" ") + word + " ") + text_of(part);
@@ -60,6 +73,12 @@ std::string text_of(const Expression& expression) {
     case Op::column: return named(expression);
     case Op::text: return quoted(expression.text);
     case Op::keys: return call("", expression);
+    case Op::distance: return with_limit("distance", expression);
+    case Op::nearest: return with_limit("nearest", expression);
+    case Op::focal_mean: return with_limit("focal_mean", expression);
+    case Op::focal_min: return with_limit("focal_min", expression);
+    case Op::focal_max: return with_limit("focal_max", expression);
+    case Op::focal_variety: return with_limit("focal_variety", expression);
     case Op::add: return joined("+", expression);
     case Op::subtract: return joined("-", expression);
     case Op::multiply: return joined("*", expression);
@@ -158,7 +177,21 @@ strata::query::LayerView layer(const std::string& slug) {
   return view;
 }
 
+void evaluate_parts(const Expression& condition);
+
+// Evaluates a condition, and the conditions in its functions along the surface. The functions
+// themselves have any values.
 void evaluate(const Expression& condition) {
+  const auto formula = strata::query::separate_surface_functions(condition, "where");
+  demand(formula || formula.error().reason == strata::mistake::kTooLarge);
+  if (!formula) return;
+  demand(formula->functions.empty() || !strata::query::split_records(condition, "where"));
+  for (const auto& each : formula->functions)
+    if (each.function.parts.front().is_condition()) evaluate_parts(each.function.parts.front());
+  evaluate_parts(formula->expression);
+}
+
+void evaluate_parts(const Expression& condition) {
   static const strata::mesh::SurfaceMap map = one_block();
   const auto split = strata::query::split_records(condition, "where");
   if (!split) return;

@@ -1,0 +1,176 @@
+// Functions along the surface in formulas: their grammar, and the layers that take their place.
+#include "expression/surface_functions.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "expression/expression_parser.h"
+#include "expression/record_parts.h"
+
+namespace strata::query {
+namespace {
+
+using Op = Expression::Op;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Expression number(const std::string& text) {
+  const auto parsed = parse_number(text, "expression");
+  EXPECT_TRUE(parsed) << text << ": " << parsed.error().detail;
+  return parsed.value_or(Expression{});
+}
+Expression condition(const std::string& text) {
+  const auto parsed = parse_condition(text, "expression");
+  EXPECT_TRUE(parsed) << text << ": " << parsed.error().detail;
+  return parsed.value_or(Expression{});
+}
+
+TEST(SurfaceFunctions, have_a_condition_or_a_number_and_a_limit) {
+  const Expression distance = number("distance(pieces = 3 and wet > 0.5, 50)");
+  EXPECT_EQ(distance.op, Op::distance);
+  EXPECT_EQ(distance.number, 50);
+  ASSERT_EQ(distance.parts.size(), 1u);
+  EXPECT_EQ(distance.parts[0], condition("pieces = 3 and wet > 0.5"));
+  EXPECT_EQ(number("distance(wet > 1)").number, kInfinity);
+  const Expression nearest = number("nearest(pieces, 2.5)");
+  EXPECT_EQ(nearest.op, Op::nearest);
+  EXPECT_EQ(nearest.number, 2.5);
+  EXPECT_EQ(nearest.parts[0], number("pieces"));
+  EXPECT_EQ(number("nearest(pieces.thickness * 2)").number, kInfinity);
+}
+
+TEST(SurfaceFunctions, of_neighborhoods_have_a_number_and_a_radius) {
+  for (const auto& [name, op] :
+       {std::pair("focal_mean", Op::focal_mean), std::pair("focal_min", Op::focal_min),
+        std::pair("focal_max", Op::focal_max), std::pair("focal_variety", Op::focal_variety)}) {
+    const Expression focal = number(std::string(name) + "(wet - dry, 5)");
+    EXPECT_EQ(focal.op, op);
+    EXPECT_EQ(focal.number, 5);
+    EXPECT_EQ(focal.parts[0], number("wet - dry"));
+  }
+}
+
+TEST(SurfaceFunctions, take_a_layer_for_the_places_where_it_has_a_value) {
+  EXPECT_EQ(number("distance(crack)"), number("distance(valid(crack))"));
+  EXPECT_EQ(number("distance(\"3d\", 4)"), number("distance(valid(\"3d\"), 4)"));
+  // A column is a condition by itself.
+  EXPECT_EQ(number("distance(pieces.wet)").parts[0], condition("pieces.wet"));
+}
+
+TEST(SurfaceFunctions, within_is_a_known_distance) {
+  EXPECT_EQ(condition("within(crack, 20)"), condition("distance(crack, 20) is not null"));
+  EXPECT_EQ(condition("not within(wet > 1, 20) and z > 2"),
+            condition("distance(wet > 1, 20) is null and z > 2"));
+}
+
+TEST(SurfaceFunctions, are_names_of_layers_without_a_bracket) {
+  EXPECT_EQ(number("distance + nearest * within").op, Op::add);
+  EXPECT_EQ(number("distance(distance)").parts[0].name, "distance");
+}
+
+struct Mistaken {
+  std::string text;
+  std::string_view reason;
+  std::size_t offset;
+  std::size_t length = 0;
+  std::string says{};
+};
+
+TEST(SurfaceFunctions, are_refused_with_the_reason_and_the_place) {
+  using namespace mistake;
+  for (const Mistaken& each : std::vector<Mistaken>{
+           {"distance(wet + 1)", kExpectsCondition, 9},
+           {"distance(wet > 1, dry)", kSyntax, 18, 0, "as a number"},
+           {"distance(wet > 1, -5)", kSyntax, 18, 0, "as a number"},
+           {"distance(wet > 1, 5 mm)", kUnit, 18, 4, "unit of the model"},
+           {"distance(wet > 1, 5mm)", kUnit, 18, 3},
+           {"distance(wet > 1, 5 adn 6)", kSyntax, 20},
+           {"distance(wet > 1", kSyntax, 16},
+           {"distance()", kSyntax, 9},
+           {"within(wet > 1) and true", kSyntax, 14, 0, "a distance"},
+           {"nearest(wet > 1)", kExpectsNumber, 8},
+           {"nearest('a')", kWrongType, 8},
+           {"focal_mean(wet)", kSyntax, 14, 0, "a distance"},
+           {"focal_min(wet > 1, 5)", kExpectsNumber, 10},
+           {"focal_max(wet, dry)", kSyntax, 15, 0, "as a number"},
+           {"distanc(wet > 1)", kUnknownFunction, 0, 7, "Did you mean distance"},
+       }) {
+    SCOPED_TRACE(each.text);
+    const auto parsed = parse_number(each.text, "expression");
+    ASSERT_FALSE(parsed);
+    EXPECT_EQ(parsed.error().reason, each.reason) << parsed.error().detail;
+    EXPECT_EQ(parsed.error().offset, each.offset);
+    EXPECT_EQ(parsed.error().length, each.length);
+    std::string told = parsed.error().detail;
+    if (!parsed.error().suggestions.empty())
+      told += " Did you mean " + parsed.error().suggestions.front();
+    EXPECT_THAT(told, testing::HasSubstr(each.says));
+  }
+}
+
+TEST(SurfaceFunctions, work_in_computed_layers_only) {
+  for (const char* text : {"wet > 1 and distance(crack) < 5", "within(pieces.state = 'loose', 5)",
+                           "pieces.thickness > distance(pieces.wet)", "nearest(pieces) = 3"}) {
+    SCOPED_TRACE(text);
+    const auto split = split_records(condition(text), "where");
+    ASSERT_FALSE(split);
+    EXPECT_EQ(split.error().reason, mistake::kComputedLayersOnly);
+    EXPECT_EQ(split.error().field, "where");
+    EXPECT_THAT(split.error().detail, testing::HasSubstr("create a computed layer"));
+    const std::string named = std::string(text).substr(*split.error().offset, split.error().length);
+    EXPECT_TRUE(named == "distance" || named == "within" || named == "nearest") << named;
+    const auto filter = parse_condition(text, "filter", Names::columns);
+    ASSERT_FALSE(filter);
+    EXPECT_EQ(filter.error().reason, mistake::kComputedLayersOnly);
+  }
+}
+
+TEST(SurfaceFunctions, give_their_place_to_layers) {
+  const auto formula =
+      separate_surface_functions(number("1 + distance(pieces.wet, 5) * nearest(pieces)"), "e");
+  ASSERT_TRUE(formula);
+  ASSERT_EQ(formula->functions.size(), 2u);
+  EXPECT_EQ(formula->functions[0].function, number("distance(pieces.wet, 5)"));
+  EXPECT_EQ(formula->functions[1].function, number("nearest(pieces)"));
+  EXPECT_FALSE(has_surface_function(formula->expression));
+  EXPECT_EQ(layers_of(formula->expression),
+            (std::vector<std::string>{formula->functions[0].slug, formula->functions[1].slug}));
+  EXPECT_TRUE(split_records(formula->expression, "e"));
+}
+
+TEST(SurfaceFunctions, read_the_layers_of_inner_functions) {
+  const auto formula = separate_surface_functions(number("distance(distance(crack) < 5)"), "e");
+  ASSERT_TRUE(formula);
+  ASSERT_EQ(formula->functions.size(), 2u);
+  EXPECT_EQ(formula->functions[0].function, number("distance(crack)"));
+  EXPECT_EQ(layers_of(formula->functions[1].function),
+            std::vector<std::string>{formula->functions[0].slug});
+  EXPECT_EQ(formula->expression.name, formula->functions[1].slug);
+}
+
+TEST(SurfaceFunctions, that_are_equal_are_computed_once) {
+  const auto count = [](const std::string& text) {
+    return separate_surface_functions(number(text), "e")->functions.size();
+  };
+  EXPECT_EQ(count("distance(crack) + distance(valid(crack)) + if(within(crack, 2), 1, 0)"), 2u);
+  EXPECT_EQ(count("distance(crack) * distance(salt) + distance(crack, 5)"), 3u);
+  EXPECT_EQ(count("if(distance(crack) between 3 and 5, 1, 0)"), 1u);
+  EXPECT_EQ(count("crack + 1"), 0u);
+}
+
+TEST(SurfaceFunctions, have_a_limit_for_their_number) {
+  std::string text = "0";
+  for (std::size_t i = 1; i <= kMaxSurfaceFunctions; ++i)
+    text += " + distance(crack, " + std::to_string(i) + ")";
+  EXPECT_TRUE(separate_surface_functions(number(text), "e"));
+  const auto refused = separate_surface_functions(number(text + " + nearest(crack)"), "e");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().reason, mistake::kTooLarge);
+  EXPECT_EQ(refused.error().field, "e");
+}
+
+}  // namespace
+}  // namespace strata::query
