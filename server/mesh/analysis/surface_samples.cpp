@@ -12,6 +12,7 @@ namespace strata::mesh {
 namespace {
 
 constexpr int kCellsPerRadius = 5;
+constexpr float kEdgesPerRadius = 2;  // of the pieces of triangles that are cut for `vertices`
 constexpr double kMaxPieces = 2e7;
 // A group stores its cell with 20 bits per axis.
 constexpr double kMaxCells = 1 << 20;
@@ -23,7 +24,7 @@ constexpr const char* kSampling = "Sampling the surface";
 struct Piece {
   std::uint64_t group;  // fine cell and facing direction
   glm::vec3 position, normal;
-  float area;
+  float area, vertices;
 };
 
 // Returns the number of the axis direction, one of six, that is nearest to a normal.
@@ -39,8 +40,12 @@ std::uint64_t facing(const glm::vec3& n) {
 // bands do not depend on the number of threads.
 class SampleBands {
  public:
-  SampleBands(const Geometry& geometry, SurfaceSamples& samples)
-      : geometry_(geometry), samples_(samples), cell_(samples.radius_ / kCellsPerRadius) {
+  SampleBands(const Geometry& geometry, SurfaceSamples& samples, SurfaceSamples::Pieces pieces)
+      : geometry_(geometry),
+        samples_(samples),
+        at_vertices_(pieces == SurfaceSamples::Pieces::vertices),
+        cell_(samples.radius_ / kCellsPerRadius),
+        edge_(at_vertices_ ? samples.radius_ / kEdgesPerRadius : cell_) {
     const glm::vec3 extent = geometry.box_max - geometry.box_min;
     axis_ = longest_axis(extent);
     cells_ = static_cast<int>(
@@ -70,14 +75,17 @@ class SampleBands {
     for (std::size_t i = 0; i < pieces.size();) {
       glm::dvec3 position(0), normal(0);
       double area = 0;
+      float vertices = 0;
       const auto group = pieces[i].group;
       for (; i < pieces.size() && pieces[i].group == group; ++i) {
         area += pieces[i].area;
+        vertices += pieces[i].vertices;
         position += double{pieces[i].area} * glm::dvec3(pieces[i].position);
         normal += double{pieces[i].area} * glm::dvec3(pieces[i].normal);
       }
-      const SurfaceSamples::Sample sample{
-          glm::vec3(position / area), glm::vec3(glm::normalize(normal)), static_cast<float>(area)};
+      const SurfaceSamples::Sample sample{glm::vec3(position / area),
+                                          glm::vec3(glm::normalize(normal)),
+                                          static_cast<float>(area), vertices};
       keyed.push_back({SurfaceSamples::key_of(samples_.cell_of(sample.position)), sample});
     }
     pieces = {};
@@ -162,8 +170,12 @@ class SampleBands {
     const glm::vec3 normal = cross / length;
     const float longest =
         std::sqrt(std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(ac - ab, ac - ab)}));
-    const int cuts = std::max(1, static_cast<int>(std::ceil(longest / cell_)));
-    const float area = length / 2 / static_cast<float>(cuts * cuts);
+    const int cuts = std::max(1, static_cast<int>(std::ceil(longest / edge_)));
+    // A triangle has three pieces at its vertices, or else `cuts`² pieces. Together they count as
+    // half a vertex.
+    const bool at_vertices = at_vertices_ && cuts == 1;
+    const float parts = at_vertices ? 3.0f : static_cast<float>(cuts) * static_cast<float>(cuts);
+    const float area = length / 2 / parts, vertices = 0.5f / parts;
     const auto add = [&](float i, float j) {
       const glm::vec3 position = a + (i * ab + j * ac) / static_cast<float>(cuts);
       const glm::ivec3 fine(glm::floor((position - samples_.low_) / cell_));
@@ -173,15 +185,22 @@ class SampleBands {
                                   (std::uint64_t(std::uint32_t(fine.y) & 0xfffff) << 23) |
                                   (std::uint64_t(std::uint32_t(fine.z) & 0xfffff) << 43) |
                                   facing(normal);
-      pieces.push_back({group, position, normal, area});
+      pieces.push_back({group, position, normal, area, vertices});
     };
+    if (at_vertices) {
+      add(0, 0);
+      add(1, 0);
+      add(0, 1);
+      return;
+    }
     for (int i = 0; i < cuts; ++i) {
       int j_begin = 0, j_end = cuts - i;
       if (cuts > kManyCuts) {
-        // Selects the pieces in [first, end). Adds 2 cells and 1 piece for their size and rounding.
+        // Selects the pieces in [first, end). Adds 2 edges and 1 piece for their size and rounding.
         const double at = (a[axis_] + double{ab[axis_]} * i / cuts - samples_.low_[axis_]) / cell_;
         const double step = double{ac[axis_]} / cuts / cell_;
-        const double low = (first - 2 - at) / step, high = (end + 2 - at) / step;
+        const double margin = 2 * edge_ / cell_;
+        const double low = (first - margin - at) / step, high = (end + margin - at) / step;
         if (!std::isnan(low) && !std::isnan(high)) {
           // The bounds are infinite for a row parallel to the band, inside or outside it.
           j_begin = static_cast<int>(std::clamp(std::min(low, high) - 1, 0.0, double(j_end)));
@@ -198,7 +217,9 @@ class SampleBands {
 
   const Geometry& geometry_;
   SurfaceSamples& samples_;
+  const bool at_vertices_;
   const float cell_;
+  const float edge_;  // the longest edge of a piece
   int axis_ = 0, cells_ = 1;
   std::vector<Band> bands_;
   Buckets triangles_of_band_;
@@ -211,10 +232,10 @@ double SurfaceSamples::least_radius(double area, const glm::dvec3& extent) {
 }
 
 Result<SurfaceSamples> SurfaceSamples::make(const Geometry& geometry, float radius,
-                                            Progress& progress, int threads) {
+                                            Progress& progress, int threads, Pieces pieces) {
   progress.report(0, kSampling);
   SurfaceSamples samples(geometry.box_min, radius);
-  SampleBands bands(geometry, samples);
+  SampleBands bands(geometry, samples, pieces);
   std::atomic<int> done{0};
   parallel_for(threads, bands.count(), [&](int band) {
     if (progress.cancelled()) return;
@@ -223,7 +244,20 @@ Result<SurfaceSamples> SurfaceSamples::make(const Geometry& geometry, float radi
   });
   if (progress.cancelled()) return cancelled_problem();
   bands.gather();
+  samples.find_near_wide_cells();
   return samples;
+}
+
+void SurfaceSamples::find_near_wide_cells() {
+  std::unordered_map<std::uint64_t, glm::ivec3> with_samples;
+  for (const auto& [key, range] : cells_) {
+    const glm::ivec3 cell = wide(cell_of(samples_[range.first].position));
+    with_samples.emplace(key_of(cell), cell);
+  }
+  for (const auto& [key, cell] : with_samples)
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) near_wide_cells_.insert(key_of(cell + glm::ivec3(x, y, z)));
 }
 
 std::span<const SurfaceSamples::Sample> SurfaceSamples::in_cell(const glm::ivec3& cell) const {

@@ -32,7 +32,7 @@ inline Front checked_front(const FrontTriangle& t, double distance_a, double dis
   return {distance, 2 * crossing < t.ab};
 }
 
-// A is the origin, B lies on the x axis, and C above it.
+// A is the origin, B is on the x axis, and C is above it.
 struct FrontApex {
   double x, y;
   explicit FrontApex(const FrontTriangle& t)

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+
+#include "mesh/rollout/fit_developed_surface.h"
+
+namespace strata::mesh {
+
+// The plane on which a cylinder or cone is unrolled, in model units: x to the right and y up, as
+// the viewer of the side sees them. Lengths and areas are those of the cylinder or cone. The part
+// between the angles `from` and `to` is unrolled. Its middle is at x = 0, and there, y is the
+// slant. A cylinder becomes a rectangle, and a cone becomes a sector of a ring.
+struct RolloutSheet {
+  DevelopedSurface surface;
+  RolloutSide side = RolloutSide::outside;
+  double from = 0, to = 0;  // radians, from < to ≤ from + 2π; the cut is at both
+  double slant_from = 0, slant_to = 0;
+  glm::dvec2 min{0}, max{0};  // the bounds of the unrolled part
+
+  double middle() const { return (from + to) / 2; }
+  // The sign of x where the angle is larger than the middle.
+  double turn() const { return side == RolloutSide::outside ? 1 : -1; }
+  struct SurfacePlace {
+    double angle = 0, slant = 0;
+  };
+  glm::dvec2 on_sheet(const SurfacePlace& place) const;
+  std::optional<SurfacePlace> on_surface(const glm::dvec2& sheet) const;  // nullopt: outside it
+  // Returns the direction of growing slants on the sheet. The lines of a cone fan out.
+  glm::dvec2 up_at(double angle) const;
+  // Returns a direction on the sheet as a direction in the world. `over` is the part of the
+  // direction that points from the surface to the viewer.
+  glm::dvec3 in_world(const SurfacePlace& place, const glm::dvec2& on_sheet, double over) const;
+};
+
+// Finds the part of the surface that the walls of the model cover on this side. `cut` is an angle
+// in radians. Without it, the cut is in the middle of the largest gap of the model, or, if there is
+// no gap, opposite the angle 0. Checks the current question. Returns an `invalid` error if no
+// triangle faces the side.
+Result<RolloutSheet> plan_rollout(const Geometry& geometry, const DevelopedFit& fit,
+                                  const std::optional<double>& cut);
+
+}  // namespace strata::mesh
