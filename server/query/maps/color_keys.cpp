@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "query/sampling/cielab.h"
+
 namespace strata::query {
 namespace {
 
@@ -20,21 +22,9 @@ float squared_distance(const Lab& x, const Lab& y) {
 }
 
 Lab lab_of(const std::uint8_t* rgb) {
-  static const std::array<float, 256> light_of_srgb = [] {
-    std::array<float, 256> light{};
-    for (std::size_t i = 0; i < light.size(); ++i) {
-      const double srgb = static_cast<double>(i) / 255;
-      light[i] = static_cast<float>(srgb <= 0.04045 ? srgb / 12.92
-                                                    : std::pow((srgb + 0.055) / 1.055, 2.4));
-    }
-    return light;
-  }();
-  const float r = light_of_srgb[rgb[0]], g = light_of_srgb[rgb[1]], b = light_of_srgb[rgb[2]];
-  const auto root = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.0f / 116; };
-  const float x = root((0.4124f * r + 0.3576f * g + 0.1805f * b) / 0.9505f);
-  const float y = root(0.2126f * r + 0.7152f * g + 0.0722f * b);
-  const float z = root((0.0193f * r + 0.1192f * g + 0.9505f * b) / 1.0890f);
-  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+  const glm::vec3 lab =
+      lab_of_light({light_of_srgb(rgb[0]), light_of_srgb(rgb[1]), light_of_srgb(rgb[2])});
+  return {lab.x, lab.y, lab.z};
 }
 
 // Pixels with similar colors.

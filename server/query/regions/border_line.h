@@ -21,16 +21,22 @@ struct BorderLine {
   // value.
   std::optional<std::uint32_t> of{};
   double width = 0;  // model units, above 0
-  // Where the line lies: half of it on each side, or completely inside the regions. Without `of`,
+  // Whether the line is completely inside the regions, or half of it on each side. Without `of`,
   // every line is centered.
   bool inside = false;
 };
 
 // Selects the texels whose center is on the line along the borders. A narrow line has at least the
 // texels next to the border: those inside the regions, or on both sides without `of`. The edge of
-// the mesh and the seams of the atlas are no borders. Distances are those of border_distances.
+// the mesh and the seams of the atlas are no borders.
+//
+// Distances are measured along the surface (mesh/distance/surface_distance.h), from the texels at
+// the border. A side of the line may be wrong by half a texel, because it follows the steps of the
+// texels, and by the error of these distances. Takes time and memory like distances_along_surface.
+// Fails when cancelled.
 Result<TexelSelection> select_border_line(const SurfaceValues& values, const BorderLine& line,
                                           const mesh::SurfaceMap& map,
-                                          const mesh::TexelGraph& graph, Progress& progress);
+                                          const mesh::TexelGraph& graph, Progress& progress,
+                                          int threads = 1);
 
 }  // namespace strata::query

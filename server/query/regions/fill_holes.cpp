@@ -1,9 +1,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/progress.h"
 #include "mesh/texels/texel_graph.h"
-#include "query/regions/recolor.h"
 #include "query/regions/sieve.h"
 
 namespace strata::query {
@@ -17,14 +15,13 @@ struct Around {
 
 }  // namespace
 
-Result<CleanedValues> fill_holes(SurfaceValues values, double max_area, const mesh::SurfaceMap& map,
-                                 const mesh::TexelGraph& graph, Progress& progress) {
-  progress.report(0, "Finding regions");
-  const Regions regions = STRATA_TRY(find_regions(values, map, graph, progress));
+Result<CleanedValues> fill_holes(SurfaceValues values, const Regions& regions, double max_area,
+                                 const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                                 Progress& progress) {
   const auto is_candidate = [&](const Region& region) {
     return !region.value.valid && !region.at_open_edge && region.area < max_area;
   };
-  progress.report(0.5, "Finding enclosed regions");
+  progress.report(0, "Finding enclosed regions");
   std::vector<Around> around(regions.list.size());
   const auto look_around = [&](std::uint32_t texel, std::uint32_t region) {
     if (!is_candidate(regions.list[region])) return;

@@ -81,7 +81,7 @@ Result<Pieces> find_pieces(const SurfaceValues& values, const PieceRequest& requ
   }
   progress.report(0.5, "Measuring perimeters");
   const auto perimeters = measure_perimeters(layer_of_numbers(pieces.of_texel, map), map, graph,
-                                             nullptr, {.each = true}, threads);
+                                             nullptr, {.each = true}, threads, &progress);
   if (progress.cancelled()) return cancelled_problem();
   for (std::uint32_t i = 0; i < pieces.list.size(); ++i) {
     Piece& piece = pieces.list[i];

@@ -2,8 +2,8 @@
 
 #include <bit>
 #include <string>
+#include <utility>
 
-#include "core/progress.h"
 #include "mesh/texels/texel_graph.h"
 #include "query/regions/texel_sets.h"
 
@@ -33,37 +33,47 @@ void join_slot(std::uint32_t slot, const SurfaceValues& values, const mesh::Surf
 }  // namespace
 
 Result<Regions> find_regions(const SurfaceValues& values, const mesh::SurfaceMap& map,
-                             const mesh::TexelGraph& graph, const Progress& progress) {
+                             const mesh::TexelGraph& graph, const Progress& progress,
+                             std::size_t max_regions) {
   const auto slots = static_cast<std::uint32_t>(map.block_of_slot.size());
   TexelSets sets(std::size_t{slots} * 64);
   const auto for_each_slot = [&](auto&& visit) {
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
       if (slot % kSlotsAtOnce == 0 && progress.cancelled()) return false;
-      if (!visit(slot)) return true;
+      visit(slot);
     }
     return true;
   };
   const auto add = [&](std::uint32_t slot) {
     for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1)
       sets.add(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left)));
-    return true;
   };
-  const auto join = [&](std::uint32_t slot) {
-    join_slot(slot, values, map, graph, sets);
-    return true;
-  };
+  const auto join = [&](std::uint32_t slot) { join_slot(slot, values, map, graph, sets); };
   if (!for_each_slot(add) || !for_each_slot(join)) return cancelled_problem();
 
+  Regions regions{std::move(sets).take_parents(), {}};
+  std::size_t count = 0;
+  const auto count_roots = [&](std::uint32_t slot) {
+    for (std::uint32_t texel = slot * 64; texel < slot * 64 + 64; ++texel)
+      count += regions.of_texel[texel] == texel ? 1u : 0u;
+  };
+  if (!for_each_slot(count_roots)) return cancelled_problem();
+  if (count > max_regions)
+    return fail(ErrorCode::invalid, "Too many regions",
+                "The layer has " + std::to_string(count) + " regions, and at most " +
+                    std::to_string(max_regions) +
+                    " are allowed. Such operations need a layer of classes or records. Copy the "
+                    "layer to classes with a computed layer first.",
+                "layer");
+  regions.list.reserve(count);
   // A parent is never higher than its texel. In ascending order, the parents of a texel already
   // have the number of their region.
-  Regions regions{std::move(sets).take_parents(), {}};
   const auto number = [&](std::uint32_t slot) {
     for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
       const std::uint32_t texel = slot * 64 + i;
       std::uint32_t& of = regions.of_texel[texel];
       if (of == texel) {
-        if (regions.list.size() == kMaxRegions) return false;
         of = static_cast<std::uint32_t>(regions.list.size());
         regions.list.push_back({values.of(texel), false, texel, 0, 0});
       } else {
@@ -74,18 +84,21 @@ Result<Regions> find_regions(const SurfaceValues& values, const mesh::SurfaceMap
       region.area += map.area[texel];
       region.at_open_edge |= (graph.at_open_edge[slot] >> i & 1u) != 0;
     }
-    return true;
   };
-  bool few = true;
-  if (!for_each_slot([&](std::uint32_t slot) { return few = number(slot); }))
-    return cancelled_problem();
-  if (!few)
-    return fail(ErrorCode::invalid, "Too many regions",
-                "The layer has more than " + std::to_string(kMaxRegions) +
-                    " regions. Such operations need a layer of classes or records. Copy the layer "
-                    "to classes with a computed layer first.",
-                "layer");
+  if (!for_each_slot(number)) return cancelled_problem();
   return regions;
+}
+
+Result<CleanedValues> recolored(SurfaceValues values, const Regions& regions,
+                                const std::vector<std::optional<TexelValue>>& new_values,
+                                const mesh::SurfaceMap& map, const Progress& progress) {
+  CleanedValues cleaned{std::move(values), 0};
+  for (const auto& value : new_values) cleaned.regions += value.has_value() ? 1u : 0u;
+  const auto set = [&](std::uint32_t texel, std::uint32_t region) {
+    if (const auto& value = new_values[region]) cleaned.values.set(texel, *value);
+  };
+  if (!for_each_texel_of_regions(regions, map, progress, set)) return cancelled_problem();
+  return cleaned;
 }
 
 }  // namespace strata::query

@@ -1,11 +1,12 @@
 #include "query/regions/row_runs.h"
 
+#include "core/progress.h"
 #include "mesh/parallel.h"
 
 namespace strata::query {
 
 RowRuns::RowRuns(const SurfaceValues& values, const mesh::SurfaceMap& map,
-                 const mesh::TexelGraph& graph, int threads)
+                 const mesh::TexelGraph& graph, const Progress& progress, int threads)
     : values_(values),
       map_(map),
       graph_(graph),
@@ -15,6 +16,7 @@ RowRuns::RowRuns(const SurfaceValues& values, const mesh::SurfaceMap& map,
       value_end_(map.block_of_slot.size() * 64),
       area_before_(map.block_of_slot.size() * 64) {
   mesh::parallel_for(threads, map.blocks_per_side, [&](int block_y) {
+    if (progress.cancelled()) return;
     for (int y = block_y * kBlockSize; y < (block_y + 1) * kBlockSize; ++y) find_runs(y);
   });
 }

@@ -7,6 +7,11 @@
 
 #include "mesh/texels/texel_graph.h"
 #include "query/regions/surface_values.h"
+#include "query/regions/texel_discs.h"
+
+namespace strata {
+class Progress;
+}
 
 namespace strata::query {
 
@@ -17,20 +22,11 @@ namespace strata::query {
 // areas stay equal in any order of addition.
 class RowRuns {
  public:
+  // Incomplete when cancelled.
   RowRuns(const SurfaceValues& values, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-          int threads);
+          const Progress& progress, int threads);
 
-  // Returns the surface texel at a position in the atlas, or kNoNeighbour.
-  std::uint32_t texel_at(int x, int y) const {
-    const std::uint32_t slot =
-        map_.slot_of_block[static_cast<std::size_t>(y / kBlockSize) *
-                               static_cast<std::size_t>(map_.blocks_per_side) +
-                           static_cast<std::size_t>(x / kBlockSize)];
-    if (slot == mesh::kNoSlot) return mesh::kNoNeighbour;
-    const int i = y % kBlockSize * kBlockSize + x % kBlockSize;
-    return (map_.surface_mask[slot] >> i & 1u) != 0 ? slot * 64 + static_cast<std::uint32_t>(i)
-                                                    : mesh::kNoNeighbour;
-  }
+  std::uint32_t texel_at(int x, int y) const { return texel_in_atlas(map_, x, y); }
 
   std::uint32_t area(std::uint32_t texel) const {
     // Far larger texels than the mean are rare. The bound keeps sums within 32 bits.
@@ -38,13 +34,19 @@ class RowRuns {
         std::min(std::lround(map_.area[texel] * steps_per_area_), kMaxArea));
   }
 
+  // Returns whether the texels x0…x1 of a row are all connected to each other along the row.
+  bool are_connected(int y, int x0, int x1) const {
+    if (y < 0 || x0 < 0 || y >= map_.resolution || x1 >= map_.resolution) return false;
+    const std::uint32_t texel = texel_at(x0, y);
+    return texel != mesh::kNoNeighbour && chart_end_[texel] >= x1;
+  }
+
   // Calls add(value, area) for each run of the texels x0…x1 of a row. Returns false if these texels
-  // are not all connected to each other along the row.
+  // are not all connected.
   template <class Add>
   bool for_each_run(int y, int x0, int x1, Add&& add) const {
-    if (y < 0 || x0 < 0 || y >= map_.resolution || x1 >= map_.resolution) return false;
+    if (!are_connected(y, x0, x1)) return false;
     std::uint32_t texel = texel_at(x0, y);
-    if (texel == mesh::kNoNeighbour || chart_end_[texel] < x1) return false;
     while (true) {
       const int end = std::min<int>(value_end_[texel], x1);
       const std::uint32_t last = texel_at(end, y);

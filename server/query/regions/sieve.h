@@ -6,12 +6,6 @@
 
 namespace strata::query {
 
-// The result of an operation on the regions of a layer.
-struct CleanedValues {
-  SurfaceValues values;
-  std::uint64_t regions = 0;  // regions that got another value
-};
-
 enum class SieveTo {
   longest_border,  // the value of the neighbor region with the longest common border
   no_value,
@@ -22,20 +16,23 @@ enum class SieveTo {
 // With `longest_border`, only regions that keep their value count as neighbors. They are regions
 // of at least `min_area`, and regions without a value. A small region among small regions waits
 // until one of its neighbors belongs to such a region. If the whole piece of the surface consists
-// of small regions, they stay unchanged. Borders of nearly the same length (1 in 10⁶) are decided
+// of small regions, they stay unchanged. Borders of nearly the same length (1 in 10³) are decided
 // by the larger area of the neighbor, then by its value, so that the result does not depend on the
-// atlas.
+// atlas. Along a seam, the length of a border may differ by a texel, which may decide for regions
+// of a few texels.
 //
 // The method is that of `r.reclass.area` in GRASS GIS (mode `rmarea`). `gdal_sieve` takes the
-// largest neighbor instead. Lengths are measured with BorderLines. Fails like find_regions.
-Result<CleanedValues> sieve(SurfaceValues values, double min_area, SieveTo to,
-                            const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+// largest neighbor instead. Lengths are measured with BorderLines. `regions` are those of
+// `values`. Fails when cancelled.
+Result<CleanedValues> sieve(SurfaceValues values, const Regions& regions, double min_area,
+                            SieveTo to, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                             Progress& progress);
 
 // Gives each region without a value the value around it if its area is below `max_area` (model
 // units²) and all texels around it have the same value. A region at an open edge of the mesh is not
-// enclosed, and stays unchanged. Fails like find_regions.
-Result<CleanedValues> fill_holes(SurfaceValues values, double max_area, const mesh::SurfaceMap& map,
-                                 const mesh::TexelGraph& graph, Progress& progress);
+// enclosed, and stays unchanged. `regions` are those of `values`. Fails when cancelled.
+Result<CleanedValues> fill_holes(SurfaceValues values, const Regions& regions, double max_area,
+                                 const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                                 Progress& progress);
 
 }  // namespace strata::query

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "core/compensated_sum.h"
+#include "core/progress.h"
 #include "domain/layers/mask_texels.h"
 #include "mesh/texels/slot_bits.h"
 #include "query/conditions/texel_values.h"
@@ -24,12 +25,15 @@ void read_tile(const TileData& tile, TileAddress address, const mesh::SurfaceMap
                     });
 }
 
-// Returns the surface texels whose values differ, and adds up their areas.
-std::vector<std::uint64_t> find_changed(const SurfaceValues& before, const SurfaceValues& after,
-                                        const mesh::SurfaceMap& map, TexelPatch& patch) {
+// Returns the surface texels whose values differ, and adds up their areas. Fails when cancelled.
+Result<std::vector<std::uint64_t>> find_changed(const SurfaceValues& before,
+                                                const SurfaceValues& after,
+                                                const mesh::SurfaceMap& map, TexelPatch& patch,
+                                                const Progress& progress) {
   std::vector<std::uint64_t> changed(map.block_of_slot.size(), 0);
   CompensatedSum area;
-  for (std::uint32_t slot = 0; slot < changed.size(); ++slot)
+  for (std::uint32_t slot = 0; slot < changed.size(); ++slot) {
+    if (slot % 4096 == 0 && progress.cancelled()) return cancelled_problem();
     for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
       const std::uint32_t texel = slot * 64 + static_cast<std::uint32_t>(i);
@@ -38,6 +42,7 @@ std::vector<std::uint64_t> find_changed(const SurfaceValues& before, const Surfa
       ++patch.texels;
       area += map.area[texel];
     }
+  }
   patch.area = area.value();
   return changed;
 }
@@ -65,14 +70,11 @@ SurfaceValues read_surface_values(const TileMap& tiles, ValueType type,
   return values;
 }
 
-std::uint64_t surface_values_bytes(const mesh::SurfaceMap& map) {
-  return map.block_of_slot.size() * (64 * sizeof(std::uint32_t) + sizeof(std::uint64_t));
-}
-
-TexelPatch make_patch(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
-                      SurfaceValues after) {
+Result<TexelPatch> make_patch(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                              SurfaceValues after, const Progress& progress) {
   TexelPatch patch;
-  auto changed = find_changed(read_surface_values(tiles, type, map), after, map, patch);
+  auto changed =
+      STRATA_TRY(find_changed(read_surface_values(tiles, type, map), after, map, patch, progress));
   if (patch.texels == 0) return patch;
   mesh::for_each_gutter_texel(map, [&](mesh::SlotTexel gutter, mesh::SlotTexel owner) {
     if ((changed[owner.slot] >> owner.texel & 1u) == 0) return;
@@ -81,7 +83,8 @@ TexelPatch make_patch(const TileMap& tiles, ValueType type, const mesh::SurfaceM
               after.of(owner.slot * 64 + static_cast<std::uint32_t>(owner.texel)));
   });
   const int tiles_per_side = map.resolution / kTileSize;
-  for (int y = 0; y < tiles_per_side; ++y)
+  for (int y = 0; y < tiles_per_side; ++y) {
+    if (progress.cancelled()) return cancelled_problem();
     for (int x = 0; x < tiles_per_side; ++x) {
       const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
       const TileMask mask =
@@ -96,6 +99,7 @@ TexelPatch make_patch(const TileMap& tiles, ValueType type, const mesh::SurfaceM
       });
       patch.tiles[address] = {mask, std::move(before), std::move(data)};
     }
+  }
   return patch;
 }
 

@@ -5,8 +5,13 @@
 #include <memory>
 #include <vector>
 
+#include "core/error.h"
 #include "domain/layers/tile_mirror.h"
 #include "mesh/texels/surface_map.h"
+
+namespace strata {
+class Progress;
+}
 
 namespace strata::query {
 
@@ -37,9 +42,6 @@ struct SurfaceValues {
 SurfaceValues read_surface_values(const TileMap& tiles, ValueType type,
                                   const mesh::SurfaceMap& map);
 
-// Bytes of the SurfaceValues of a map.
-std::uint64_t surface_values_bytes(const mesh::SurfaceMap& map);
-
 // A change of some texels of a layer: surface texels, and the gutter texels that follow them.
 struct TexelPatch {
   struct Tile {
@@ -53,8 +55,8 @@ struct TexelPatch {
   bool empty() const { return tiles.empty(); }
 };
 
-// Returns the change from the tiles of a layer to `after`.
-TexelPatch make_patch(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
-                      SurfaceValues after);
+// Returns the change from the tiles of a layer to `after`. Fails when cancelled.
+Result<TexelPatch> make_patch(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                              SurfaceValues after, const Progress& progress);
 
 }  // namespace strata::query

@@ -27,6 +27,9 @@ class ValueAreas {
     entries_[last_].area += area;
   }
 
+  // Returns the number of distinct values.
+  std::size_t count() const { return entries_.size(); }
+
   // Returns the value with the largest area, or `own` if no area is larger by 1 in 10⁴.
   TexelValue largest(TexelValue own) const {
     std::uint64_t most = 0, of_own = 0;

@@ -18,25 +18,33 @@ std::vector<SeenLayer> seen_layers(const mesh::SearchTree& tree, const glm::dvec
     std::vector<SeenLayer> seen(layers.size());
     for (int column = 0; column < columns; ++column) {
       const auto point = pick(tree, origin, camera, (column + 0.5) * camera.width / columns,
-                              (row + 0.5) * camera.height / rows, layers);
-      if (!point.hit) continue;
-      for (std::size_t i = layers.size(); i-- > 0;) {  // from the top
-        const LayerValue& value = point.values[i];
-        if (!value.valid) continue;
-        const Cover cover = covers[i].of(value.value);
-        if (cover == Cover::nothing) continue;
-        seen[i].is_seen = true;
-        if (covers[i].tells_values) seen[i].values.insert(value.value);
-        if (cover == Cover::all) break;
-      }
+                              (row + 0.5) * camera.height / rows, {});
+      if (point.hit) see_point(point.uv, layers, covers, seen);
     }
     std::lock_guard lock(mutex);
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-      all[i].is_seen |= seen[i].is_seen;
-      all[i].values.merge(seen[i].values);
-    }
+    merge(all, std::move(seen));
   });
   return all;
+}
+
+void see_point(glm::vec2 uv, const std::vector<LayerView>& layers,
+               const std::vector<LayerCover>& covers, std::vector<SeenLayer>& seen) {
+  for (std::size_t i = layers.size(); i-- > 0;) {  // from the top
+    const LayerValue value = value_at(layers[i], uv);
+    if (!value.valid) continue;
+    const Cover cover = covers[i].of(value.value);
+    if (cover == Cover::nothing) continue;
+    seen[i].is_seen = true;
+    if (covers[i].tells_values) seen[i].values.insert(value.value);
+    if (cover == Cover::all) break;
+  }
+}
+
+void merge(std::vector<SeenLayer>& all, std::vector<SeenLayer>&& seen) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].is_seen |= seen[i].is_seen;
+    all[i].values.merge(seen[i].values);
+  }
 }
 
 }  // namespace strata::query

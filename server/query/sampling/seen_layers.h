@@ -37,4 +37,10 @@ std::vector<SeenLayer> seen_layers(const mesh::SearchTree& tree, const glm::dvec
                                    const std::vector<LayerView>& layers,
                                    const std::vector<LayerCover>& covers);
 
+// Adds the layers that are visible at a texture coordinate to `seen`, which has one element for
+// each layer.
+void see_point(glm::vec2 uv, const std::vector<LayerView>& layers,
+               const std::vector<LayerCover>& covers, std::vector<SeenLayer>& seen);
+void merge(std::vector<SeenLayer>& all, std::vector<SeenLayer>&& seen);
+
 }  // namespace strata::query

@@ -29,23 +29,6 @@ Rgb rounded(const glm::dvec3& color) {
   return out;
 }
 
-// Returns the share of the surface that the color of a value covers, from 0 to 1.
-double cover_of(const DrawnLayer& layer, double value, const Rgba& color) {
-  const Palette::Point* point = point_of(*layer.palette, value);
-  if (point && point->pattern == Pattern::outline) return 0;
-  return color[3] / 255.0 * std::clamp(layer.opacity, 0.0, 1.0);
-}
-
-// Blends colors from 0 to 255, as in shade_pass.frag.
-glm::dvec3 blended(LayerBlend blend, const glm::dvec3& below, const glm::dvec3& ink, double cover) {
-  switch (blend) {
-    case LayerBlend::normal: break;
-    case LayerBlend::multiply: return glm::mix(below, below * ink / 255.0, cover);
-    case LayerBlend::screen: return glm::mix(below, below + ink - below * ink / 255.0, cover);
-  }
-  return glm::mix(below, ink, cover);
-}
-
 }  // namespace
 
 void VertexColors::add_photo(const Picture& photo, double opacity) {
@@ -73,10 +56,7 @@ Rgb VertexColors::at(std::span<const std::uint32_t> vertices) const {
     std::optional<std::uint32_t> bits;
     for (const std::uint32_t vertex : vertices)
       if (!bits) bits = bits_at(layer.tiles, layer.resolution, mesh.vertices[vertex].uv);
-    if (!bits) continue;
-    const double value = decode_value(layer.type, *bits);
-    const Rgba ink = color_of(*layer.palette, value);
-    color = blended(layer.blend, color, {ink[0], ink[1], ink[2]}, cover_of(layer, value, ink));
+    if (bits) color = drawn_over(layer, color, *bits);
   }
   return rounded(color);
 }

@@ -6,24 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "domain/layers/layer_blend.h"
-#include "domain/layers/palette.h"
-#include "domain/layers/tile_mirror.h"
 #include "media/picture.h"
 #include "mesh/surface/geometry.h"
+#include "query/sampling/drawn_layer.h"
 
 namespace strata::query {
-
-// A layer with its drawing style.
-struct DrawnLayer {
-  TileMap tiles;
-  int resolution = 0;
-  ValueType type = ValueType::u8;
-  // colors by the value of the texel, never by a column
-  std::shared_ptr<const Palette> palette;
-  double opacity = 1;
-  LayerBlend blend = LayerBlend::normal;
-};
 
 // The colors of the vertices of a model, composed as in frames but without light
 // (shaders/gbuffer_pass.frag, shade_pass.frag). The colors of the scan are at the bottom. Its

@@ -26,7 +26,7 @@ class BorderLines {
   BorderLines(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph);
 
   // Calls crosses(other) for each line that starts at `texel`, and visit(other, length) if the
-  // result is true. `length` is the border length in model units that the line stands for. The
+  // result is true. `length` is the border length in model units that the line represents. The
   // same border is also crossed by the line from `other` to `texel`, so each of them is one half.
   // A line that leaves the surface at an open edge ends at kNoNeighbour, and has no opposite line.
   template <class Crosses, class Visit>

@@ -91,6 +91,7 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
   const Values row_values(rows, map.resolution), column_values(columns, map.resolution);
   std::unordered_map<std::pair<std::uint64_t, std::uint64_t>, Sum, PairHash> sums;
   std::unordered_map<std::uint64_t, int> row_bits, column_bits;
+  CompensatedSum neither;
   std::pair<std::uint64_t, std::uint64_t> last{kNone, kNone};
   Sum* last_sum = nullptr;  // neighbors mostly share both values; references stay valid
   const QuestionTurn turn;
@@ -105,7 +106,11 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
       const int texel = std::countr_zero(rest);
       const int x = x0 + texel % kBlockSize, y = y0 + texel / kBlockSize;
       const std::pair pair{row_values.at(x, y), column_values.at(x, y)};
-      if (pair.first == kNone && pair.second == kNone) continue;
+      const double area = map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
+      if (pair.first == kNone && pair.second == kNone) {
+        neither += area;
+        continue;
+      }
       if (!last_sum || pair != last) {
         last_sum = &sums[pair];
         last = pair;
@@ -115,7 +120,7 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
           return too_many(columns, "columns");
       }
       ++last_sum->texels;
-      last_sum->area += map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
+      last_sum->area += area;
     }
   }
   const auto keys_of = [](const auto& bits) {
@@ -130,9 +135,11 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
   table.columns = column_side.keys();
   table.area_m2.assign(row_side.size(), std::vector<double>(column_side.size(), 0.0));
   table.texels.assign(row_side.size(), std::vector<std::uint64_t>(column_side.size(), 0));
+  const double m2_per_unit2 = metres_per_unit * metres_per_unit;
+  table.neither_m2 = neither.value() * m2_per_unit2;
   for (const auto& [pair, sum] : sums) {
     const std::size_t row = row_side.place(pair.first), column = column_side.place(pair.second);
-    table.area_m2[row][column] = sum.area.value() * metres_per_unit * metres_per_unit;
+    table.area_m2[row][column] = sum.area.value() * m2_per_unit2;
     table.texels[row][column] = sum.texels;
   }
   return table;

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/progress.h"
 #include "mesh/parallel.h"
 #include "mesh/texels/texel_graph.h"
 #include "query/conditions/texel_values.h"
@@ -127,13 +128,15 @@ class Measuring {
 
 Perimeters measure_perimeters(const LayerView& view, const mesh::SurfaceMap& map,
                               const mesh::TexelGraph& graph, const TexelSelection* within,
-                              const ValueClasses& value_classes, int threads) {
+                              const ValueClasses& value_classes, int threads,
+                              const Progress* progress) {
   const Classes classes(view, map, within, value_classes);
   const Measuring measuring(classes, map, graph);
   constexpr std::size_t kAtOnce = 1024;
   const std::size_t slots = map.block_of_slot.size();
   std::vector<Sums> parts((slots + kAtOnce - 1) / kAtOnce);
   mesh::parallel_for(threads, static_cast<int>(parts.size()), [&](int number) {
+    if (progress && progress->cancelled()) return;
     const auto part = static_cast<std::size_t>(number);
     for (std::size_t slot = part * kAtOnce; slot < std::min(slots, (part + 1) * kAtOnce); ++slot)
       measuring.measure(static_cast<std::uint32_t>(slot), parts[part]);

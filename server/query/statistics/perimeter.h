@@ -7,6 +7,9 @@
 #include "query/sampling/values.h"
 #include "query/statistics/value_classes.h"
 
+namespace strata {
+class Progress;
+}
 namespace strata::mesh {
 struct SurfaceMap;
 struct TexelGraph;
@@ -30,8 +33,11 @@ struct Perimeters {
 // on the surface, so stretched texels have their true size (Boykov and Kolmogorov, "Computing
 // geodesics and minimal surfaces via graph cuts", ICCV 2003). The error of straight borders is at
 // most 2 %. For areas a few texels wide, and along seams, the error may be about one texel.
+//
+// If `progress` is cancelled, the result is incomplete.
 Perimeters measure_perimeters(const LayerView& view, const mesh::SurfaceMap& map,
                               const mesh::TexelGraph& graph, const TexelSelection* within,
-                              const ValueClasses& classes, int threads = 1);
+                              const ValueClasses& classes, int threads = 1,
+                              const Progress* progress = nullptr);
 
 }  // namespace strata::query

@@ -14,6 +14,8 @@ namespace strata::query {
 
 // The smallest values that are not exceeded on 5, 25, 50, 75 and 95 % of the area.
 constexpr std::array<double, 5> kQuantiles = {0.05, 0.25, 0.5, 0.75, 0.95};
+constexpr std::array<const char*, kQuantiles.size()> kQuantileNames = {"p5", "p25", "p50", "p75",
+                                                                       "p95"};
 using Quantiles = std::array<double, kQuantiles.size()>;
 
 // Returns the exact quantiles of the texels counted in `sums`, or nothing if they have no area.

@@ -13,6 +13,7 @@
 #include "query/regions/region_pieces.h"
 #include "query/regions/sieve.h"
 #include "query/statistics/perimeter.h"
+#include "support/cut_shapes.h"
 #include "support/cut_sheet.h"
 #include "support/meshes.h"
 
@@ -68,8 +69,13 @@ Grid grid_of(const Surface& sheet, const TexelSelection& selection) {
 }
 
 const std::vector<SheetCuts>& all_cuts() {
-  static const std::vector<SheetCuts> cuts{
-      {}, {{96}, {}}, {{}, {64}}, {{24, 96, 104}, {}}, {{96}, {64}}, {{40, 96, 152}, {24, 64}}};
+  static const std::vector<SheetCuts> cuts{{},
+                                           {{96}, {}},
+                                           {{}, {64}},
+                                           {{24, 96, 104}, {}},
+                                           {{96}, {64}},
+                                           {{96}, {}, 90},
+                                           {{40, 96, 152}, {24, 64}}};
   return cuts;
 }
 const std::vector<Surface>& sheets() {
@@ -85,19 +91,23 @@ using Operation = std::function<SurfaceValues(const Surface&, SurfaceValues)>;
 Operation sieve_by(double min_area, SieveTo to = SieveTo::longest_border) {
   return [=](const Surface& surface, SurfaceValues values) {
     Progress progress;
-    return sieve(std::move(values), min_area, to, surface.map, surface.graph, progress)->values;
+    const auto regions = find_regions(values, surface.map, surface.graph, progress);
+    return sieve(std::move(values), *regions, min_area, to, surface.map, surface.graph, progress)
+        ->values;
   };
 }
 Operation fill_up_to(double max_area) {
   return [=](const Surface& surface, SurfaceValues values) {
     Progress progress;
-    return fill_holes(std::move(values), max_area, surface.map, surface.graph, progress)->values;
+    const auto regions = find_regions(values, surface.map, surface.graph, progress);
+    return fill_holes(std::move(values), *regions, max_area, surface.map, surface.graph, progress)
+        ->values;
   };
 }
 Operation majority_in(double radius) {
   return [=](const Surface& surface, SurfaceValues values) {
     Progress progress;
-    return *majority(std::move(values), radius, surface.map, surface.graph, progress, 2);
+    return *majority(std::move(values), {radius}, surface.map, surface.graph, progress, 2);
   };
 }
 
@@ -141,6 +151,17 @@ TEST(Regions, are_connected_across_seams_and_have_true_areas) {
     std::ranges::sort(areas);
     EXPECT_EQ(areas, (std::vector<double>{60, 2000, kSheetWidth * kSheetHeight - 2060.0}));
   }
+}
+
+TEST(Regions, of_too_many_values_are_refused) {
+  const Surface& sheet = sheets().front();
+  const SurfaceValues squares =
+      put(sheet, grid_of([](int x, int y) { return 1 + (x / 16 + y / 16) % 2; }));
+  EXPECT_TRUE(find_regions(squares, sheet.map, sheet.graph, Progress{}, 96));
+  const auto refused = find_regions(squares, sheet.map, sheet.graph, Progress{}, 95);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid);
+  EXPECT_EQ(refused.error().field, "layer");
 }
 
 TEST(Sieve, small_regions_get_the_value_around_them_and_large_ones_stay) {
@@ -244,10 +265,14 @@ TEST(Sieve, no_small_region_remains_and_no_large_one_changes) {
     for (const Region& region : regions->list)
       EXPECT_TRUE(!region.value.valid || region.area >= 12);
     results.push_back(grid_of(sheet, after));
-    // Only where a seam meets the edge of the mesh, BorderLines may miss a texel.
+    // Where a seam meets the edge of the mesh, and between charts that are turned, a length may
+    // differ by a texel. Regions of a few texels then get another value.
+    int different = 0;
     for (int y = 3; y < kSheetHeight - 3; ++y)
       for (int x = 3; x < kSheetWidth - 3; ++x)
-        ASSERT_EQ(at(results.back(), x, y), at(results.front(), x, y)) << x << " " << y;
+        different += at(results.back(), x, y) != at(results.front(), x, y);
+    const bool turned = all_cuts()[results.size() - 1].turn != 0;
+    EXPECT_LE(different, turned ? 0.01 * kSheetWidth * kSheetHeight : 0);
   }
 }
 
@@ -271,7 +296,8 @@ TEST(FillHoles, counts_the_holes) {
   const SurfaceValues values =
       put(sheet, grid_of([](int x, int y) { return x % 10 == 5 && y % 10 == 5 ? 0 : 1; }));
   Progress progress;
-  const auto filled = fill_holes(values, 2, sheet.map, sheet.graph, progress);
+  const auto regions = find_regions(values, sheet.map, sheet.graph, progress);
+  const auto filled = fill_holes(values, *regions, 2, sheet.map, sheet.graph, progress);
   ASSERT_TRUE(filled);
   EXPECT_EQ(filled->regions, 19u * 13u);
 }
@@ -328,8 +354,8 @@ TEST(Majority, is_the_same_on_any_number_of_threads) {
   const SurfaceValues values =
       put(surface, [&](std::uint32_t) { return static_cast<int>(random() % 3); });
   Progress progress;
-  const auto one = majority(values, 0.03, surface.map, surface.graph, progress, 1),
-             four = majority(values, 0.03, surface.map, surface.graph, progress, 4);
+  const auto one = majority(values, {0.03}, surface.map, surface.graph, progress, 1),
+             four = majority(values, {0.03}, surface.map, surface.graph, progress, 4);
   ASSERT_TRUE(one && four);
   EXPECT_EQ(one->bits, four->bits);
   EXPECT_EQ(one->valid, four->valid);
@@ -337,21 +363,42 @@ TEST(Majority, is_the_same_on_any_number_of_threads) {
 
 TEST(Majority, refuses_a_radius_of_too_many_texels) {
   const Surface& sheet = sheets().front();
-  EXPECT_NEAR(max_majority_radius(sheet.map), 40, 1e-4);
   Progress progress;
   for (const double radius : {40.1, std::numeric_limits<double>::quiet_NaN()}) {
-    const auto refused = majority(put(sheet, grid_of([](int x, int) { return x; })), radius,
-                                  sheet.map, sheet.graph, progress);
+    // A texel is 1 unit of 0.15 µm.
+    const auto refused = majority(put(sheet, grid_of([](int x, int) { return x; })),
+                                  {radius, 1.5e-7}, sheet.map, sheet.graph, progress);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::invalid);
     EXPECT_EQ(refused.error().field, "radius_mm");
+    EXPECT_NE(refused.error().detail.find("at most 0.006 mm, which is 40 texels"),
+              std::string::npos)
+        << refused.error().detail;
   }
+}
+
+TEST(Majority, refuses_too_much_work_and_names_the_largest_radius) {
+  const Surface& sheet = sheets().front();
+  // Stripes of 2 texels: every texel is near a border.
+  const SurfaceValues stripes = put(sheet, grid_of([](int x, int) { return 1 + x / 2 % 2; }));
+  Progress progress;
+  const double texels = kSheetWidth * kSheetHeight;
+  const auto run = [&](double radius) {
+    return majority(stripes, {radius, 0.001, texels * 25}, sheet.map, sheet.graph, progress);
+  };
+  EXPECT_TRUE(run(4.99));
+  const auto refused = run(5.01);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid);
+  EXPECT_EQ(refused.error().field, "radius_mm");
+  EXPECT_NE(refused.error().detail.find("at most 5 mm"), std::string::npos)
+      << refused.error().detail;
 }
 
 TexelSelection line_of(const Surface& surface, const SurfaceValues& values,
                        const BorderLine& line) {
   Progress progress;
-  return *select_border_line(values, line, surface.map, surface.graph, progress);
+  return *select_border_line(values, line, surface.map, surface.graph, progress, 2);
 }
 
 TEST(BorderLine, of_a_rectangle_has_its_width_on_both_sides_or_inside) {
@@ -393,8 +440,50 @@ TEST(BorderLine, is_the_same_with_seams_and_runs_along_the_borders_of_all_values
   const BorderLine line{{}, 4, false};
   const Grid expected =
       grid_of(sheets().front(), line_of(sheets().front(), put(sheets().front(), patches), line));
-  for (const Surface& sheet : sheets())
-    EXPECT_EQ(grid_of(sheet, line_of(sheet, put(sheet, patches), line)), expected);
+  for (const Surface& sheet : sheets()) {
+    const Grid found = grid_of(sheet, line_of(sheet, put(sheet, patches), line));
+    // At a seam, distances differ by less than a texel.
+    int different = 0;
+    for (int y = 0; y < kSheetHeight; ++y)
+      for (int x = 0; x < kSheetWidth; ++x) different += at(found, x, y) != at(expected, x, y);
+    EXPECT_LT(different, 0.002 * kSheetWidth * kSheetHeight);
+  }
+}
+
+// A slab of 1 × 1 × 0.02 with a border on its front, 0.05 before the rim.
+TEST(BorderLine, around_the_rim_of_a_thin_wall_has_its_width_along_the_surface) {
+  constexpr double kThickness = 0.02, kWay = 2 + kThickness, kBorder = 0.95;
+  test::Shape shape{202, 20, {}, [](double s, double t) { return glm::dvec2(kWay * s, t); }};
+  shape.position = [](double s, double t) {
+    const double way = kWay * s;  // over the front, the rim and the back
+    if (way <= 1) return glm::dvec3(way, t, kThickness);
+    if (way <= 1 + kThickness) return glm::dvec3(1, t, 1 + kThickness - way);
+    return glm::dvec3(kWay - way, t, 0);
+  };
+  for (const test::Cuts& cuts : {test::Cuts{1, 1, 0.4, 1}, test::Cuts{4, 3, 0.7, 0.75}}) {
+    const Surface slab = test::cut_surface(shape, cuts, 512);
+    const auto way = [&](std::uint32_t texel) {
+      const glm::dvec3 at = slab.geometry.origin +
+                            glm::dvec3(slab.map.position(texel / 64, static_cast<int>(texel % 64)));
+      if (at.z > kThickness - 1e-4) return at.x;
+      return at.z < 1e-4 ? kWay - at.x : 1 + kThickness - at.z;
+    };
+    const SurfaceValues values =
+        put(slab, [&](std::uint32_t texel) { return way(texel) < kBorder ? 1 : 2; });
+    const double texel_size = std::sqrt(slab.map.area_total / double(slab.map.surface_texels));
+    for (const double width : {0.06, 0.1, 0.14, 0.2}) {
+      SCOPED_TRACE(width);
+      const auto line = line_of(slab, values, {{}, width, false});
+      EXPECT_NEAR(measure_selection(slab.map, &line).area, width,
+                  std::max(0.03 * width, texel_size));
+      double farthest = 0;
+      test::for_each_surface_texel(slab.map, [&](std::uint32_t texel) {
+        if ((line[texel / 64] >> texel % 64 & 1u) != 0)
+          farthest = std::max(farthest, std::abs(way(texel) - kBorder));
+      });
+      EXPECT_NEAR(farthest, width / 2, 2 * texel_size);
+    }
+  }
 }
 
 TEST(BorderLine, around_a_disc_on_a_sphere_has_the_area_of_its_band) {
@@ -510,6 +599,42 @@ TEST(Cleanup, specks_and_holes_on_curved_surfaces_vanish_across_seams) {
   }
 }
 
+TEST(Cleanup, a_seam_between_turned_charts_changes_areas_by_less_than_one_percent) {
+  const Surface whole = test::cut_sheet(), turned = test::cut_sheet({{96}, {}, 30});
+  const auto value_at = [](glm::dvec2 p) {
+    if (glm::distance(p, {96, 64}) < 3) return 3;  // a speck and a hole at the seam
+    if (glm::distance(p, {96, 30}) < 3) return 0;
+    return glm::distance(p, {100, 60}) < 45 ? 1 : p.x > 96 ? 2 : 0;
+  };
+  const auto areas = [&](const Surface& sheet, const Operation& operation) {
+    const SurfaceValues after = operation(
+        sheet, put(sheet, [&](std::uint32_t texel) {
+          return value_at(glm::dvec2(sheet.geometry.origin) +
+                          glm::dvec2(sheet.map.position(texel / 64, static_cast<int>(texel % 64))));
+        }));
+    std::map<std::uint32_t, double> sums;
+    test::for_each_surface_texel(sheet.map, [&](std::uint32_t texel) {
+      sums[after.of(texel).bits] += sheet.map.area[texel];
+    });
+    return sums;
+  };
+  const Operation line = [](const Surface& sheet, SurfaceValues values) {
+    const auto selected = line_of(sheet, values, {1, 8, false});
+    return put(sheet, [&](std::uint32_t texel) {
+      return static_cast<int>(selected[texel / 64] >> texel % 64 & 1u);
+    });
+  };
+  for (const auto& [name, operation] :
+       {std::pair{"sieve", sieve_by(100)}, std::pair{"fill", fill_up_to(100)},
+        std::pair{"majority", majority_in(8)}, std::pair{"line", line}}) {
+    SCOPED_TRACE(name);
+    const auto expected = areas(whole, operation), found = areas(turned, operation);
+    ASSERT_EQ(found.size(), expected.size());
+    for (const auto& [value, area] : expected)
+      EXPECT_NEAR(found.at(value), area, std::max(0.01 * area, 4.0)) << value;  // 4 texels
+  }
+}
+
 TEST(Cleanup, empty_and_full_layers_and_single_texels_are_handled) {
   const Surface& sheet = sheets().back();
   const auto empty = [](int, int) { return 0; };
@@ -540,28 +665,63 @@ TEST(Cleanup, a_surface_without_texels_has_no_regions) {
   const auto regions = find_regions({}, map, graph, progress);
   ASSERT_TRUE(regions);
   EXPECT_TRUE(regions->list.empty());
-  EXPECT_TRUE(sieve({}, 1, SieveTo::longest_border, map, graph, progress));
-  EXPECT_TRUE(fill_holes({}, 1, map, graph, progress));
-  EXPECT_TRUE(majority({}, 1, map, graph, progress));
+  EXPECT_TRUE(sieve({}, *regions, 1, SieveTo::longest_border, map, graph, progress));
+  EXPECT_TRUE(fill_holes({}, *regions, 1, map, graph, progress));
+  EXPECT_TRUE(majority({}, {1}, map, graph, progress));
   EXPECT_TRUE(select_border_line({}, {1, 1, false}, map, graph, progress));
   EXPECT_TRUE(find_pieces({}, {1, 0, 1}, map, graph, progress));
 }
 
-TEST(Cleanup, stops_when_cancelled) {
-  const Surface& sheet = sheets().front();
+// Cancels the work at the check with a chosen number, and counts the checks.
+class CancelledAt : public Progress {
+ public:
+  explicit CancelledAt(int check) : check_(check) {}
+  bool cancelled() const override { return ++checks_ > check_; }
+  int checks() const { return checks_; }
+
+ private:
+  const int check_;
+  mutable int checks_ = 0;
+};
+
+// Counts the checks of a whole run. Cancelled at any of them, the run must fail.
+void expect_every_check_cancels(int least, const std::function<ErrorCode(Progress&)>& run) {
+  CancelledAt whole(std::numeric_limits<int>::max());
+  ASSERT_EQ(run(whole), ErrorCode{});
+  ASSERT_GE(whole.checks(), least);
+  const int step = std::max(1, whole.checks() / 50);
+  for (int check = 0; check < whole.checks(); check += step) {
+    CancelledAt progress(check);
+    ASSERT_EQ(run(progress), ErrorCode::cancelled) << "check " << check;
+  }
+}
+
+TEST(Cleanup, stops_at_every_check_when_cancelled) {
+  const Surface& sheet = sheets().back();
   const SurfaceValues values =
       put(sheet, grid_of([](int x, int y) { return (x / 3 + y / 5) % 3; }));
-  Progress progress;
-  progress.cancel();
-  const auto expect_cancelled = [](const auto& result) {
-    ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().code, ErrorCode::cancelled);
-  };
-  expect_cancelled(sieve(values, 100, SieveTo::longest_border, sheet.map, sheet.graph, progress));
-  expect_cancelled(fill_holes(values, 100, sheet.map, sheet.graph, progress));
-  expect_cancelled(majority(values, 5, sheet.map, sheet.graph, progress));
-  expect_cancelled(select_border_line(values, {1, 5, false}, sheet.map, sheet.graph, progress));
-  expect_cancelled(find_pieces(values, {1, 0, 100}, sheet.map, sheet.graph, progress));
+  const auto regions = find_regions(values, sheet.map, sheet.graph, Progress{});
+  const auto code = [](const auto& result) { return result ? ErrorCode{} : result.error().code; };
+  const mesh::SurfaceMap& map = sheet.map;
+  const mesh::TexelGraph& graph = sheet.graph;
+  expect_every_check_cancels(
+      4, [&](Progress& p) { return code(find_regions(values, map, graph, p)); });
+  for (const SieveTo to : {SieveTo::longest_border, SieveTo::no_value})
+    expect_every_check_cancels(to == SieveTo::no_value ? 1 : 4, [&](Progress& p) {
+      return code(sieve(values, *regions, 100, to, map, graph, p));
+    });
+  expect_every_check_cancels(
+      2, [&](Progress& p) { return code(fill_holes(values, *regions, 100, map, graph, p)); });
+  expect_every_check_cancels(
+      100, [&](Progress& p) { return code(majority(values, {5}, map, graph, p)); });
+  expect_every_check_cancels(5, [&](Progress& p) {
+    return code(select_border_line(values, {1, 5, false}, map, graph, p));
+  });
+  expect_every_check_cancels(6, [&](Progress& p) {
+    return code(find_pieces(values, {1, 0, 1000}, map, graph, p));
+  });
+  expect_every_check_cancels(
+      4, [&](Progress& p) { return code(make_patch({}, ValueType::u8, map, values, p)); });
 }
 
 TEST(TexelPatch, changes_the_texels_that_differ_and_their_gutter) {
@@ -572,8 +732,9 @@ TEST(TexelPatch, changes_the_texels_that_differ_and_their_gutter) {
   for (const auto& [from, to] : {std::pair{0.2f, 0.5f}, std::pair{0.5f, 0.2f}}) {
     const TileMap before = test::layer_of(sphere.map, cap(from)),
                   after = test::layer_of(sphere.map, cap(to));
-    const TexelPatch patch = make_patch(before, ValueType::u8, sphere.map,
-                                        read_surface_values(after, ValueType::u8, sphere.map));
+    const TexelPatch patch =
+        *make_patch(before, ValueType::u8, sphere.map,
+                    read_surface_values(after, ValueType::u8, sphere.map), Progress{});
     EXPECT_NEAR(patch.area, 2 * kPi * 0.3, 0.02);
     TileMap patched = before;
     for (const auto& [address, tile] : patch.tiles) {
@@ -587,8 +748,8 @@ TEST(TexelPatch, changes_the_texels_that_differ_and_their_gutter) {
     ASSERT_EQ(patched.size(), after.size());
     for (const auto& [address, tile] : after) EXPECT_EQ(*patched.at(address), *tile);
     EXPECT_TRUE(make_patch(before, ValueType::u8, sphere.map,
-                           read_surface_values(before, ValueType::u8, sphere.map))
-                    .empty());
+                           read_surface_values(before, ValueType::u8, sphere.map), Progress{})
+                    ->empty());
   }
 }
 

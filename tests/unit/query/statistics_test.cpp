@@ -418,6 +418,7 @@ TEST(CrossTable, agrees_with_a_count_of_every_texel) {
     ASSERT_TRUE(table);
     std::map<std::pair<CrossTable::Key, CrossTable::Key>, std::pair<std::uint64_t, double>>
         expected;
+    double neither = 0;
     for (int y = 0; y < map.resolution; ++y)
       for (int x = 0; x < map.resolution; ++x) {
         const TileAddress address{static_cast<std::uint16_t>(x / kTileSize),
@@ -435,11 +436,17 @@ TEST(CrossTable, agrees_with_a_count_of_every_texel) {
           return decode_value(view.layer.type, tile->second->bits(texel));
         };
         const std::pair pair{key(units), key(states)};
-        if (!pair.first && !pair.second) continue;
+        const double texel_area = double{map.area[std::size_t{slot} * 64 + std::size_t(i)]} * 1e-4;
+        if (!pair.first && !pair.second) {
+          neither += texel_area;
+          continue;
+        }
         auto& [texels, area] = expected[pair];
         ++texels;
-        area += double{map.area[std::size_t{slot} * 64 + std::size_t(i)]} * 1e-4;
+        area += texel_area;
       }
+    EXPECT_GT(neither, 0);
+    EXPECT_NEAR(table->neither_m2, neither, 1e-9 * neither);
     EXPECT_EQ(table->rows.size(), 8u);
     EXPECT_EQ(table->columns.size(), 5u);
     EXPECT_EQ(table->rows.back(), std::nullopt);

@@ -1,0 +1,280 @@
+#include "query/regions/focal.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "mesh/parallel.h"
+#include "mesh/texels/texel_graph.h"
+#include "query/regions/row_runs.h"
+#include "query/regions/texel_discs.h"
+#include "query/regions/value_areas.h"
+
+namespace strata::query {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Parts of a statistic. Each adds a value with its area, or another part.
+struct MeanPart {
+  double area = 0, weighted = 0;
+  void add(float value, float of_area) {
+    area += double{of_area};
+    weighted += double{value} * double{of_area};
+  }
+  void add(const MeanPart& other) {
+    area += other.area;
+    weighted += other.weighted;
+  }
+  std::optional<float> result() const {
+    if (!(area > 0)) return std::nullopt;
+    return static_cast<float>(weighted / area);
+  }
+};
+struct MinPart {
+  float least = kInfinity;
+  void add(float value, float) { least = std::min(least, value); }
+  void add(const MinPart& other) { least = std::min(least, other.least); }
+  std::optional<float> result() const {
+    return least < kInfinity ? std::optional(least) : std::nullopt;
+  }
+};
+struct MaxPart {
+  float greatest = -kInfinity;
+  void add(float value, float) { greatest = std::max(greatest, value); }
+  void add(const MaxPart& other) { greatest = std::max(greatest, other.greatest); }
+  std::optional<float> result() const {
+    return greatest > -kInfinity ? std::optional(greatest) : std::nullopt;
+  }
+};
+
+// What a statistic reads.
+struct Input {
+  const SurfaceValues& values;
+  const RowRuns& rows;
+  const mesh::SurfaceMap& map;
+  std::vector<float> numbers;  // by texel; empty for variety
+
+  bool has_value(std::uint32_t texel) const {
+    return (values.valid[texel / 64] >> texel % 64 & 1u) != 0;
+  }
+};
+
+// The parts of the rows of 8 texels in each block. Prefix sums would be faster, but one very large
+// value would take the precision of all values to its right.
+template <class Part>
+class RowParts {
+ public:
+  explicit RowParts(const Input& input, int threads)
+      : input_(input), parts_(input.map.block_of_slot.size() * kBlockSize) {
+    constexpr std::size_t kSlotsAtOnce = 4096;
+    const std::size_t slots = input.map.block_of_slot.size();
+    mesh::parallel_for(
+        threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int number) {
+          const std::size_t first = static_cast<std::size_t>(number) * kSlotsAtOnce;
+          for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot)
+            for (std::uint32_t i = 0; i < 64; ++i)
+              add_texel(static_cast<std::uint32_t>(slot * 64) + i, parts_[slot * 8 + i / 8]);
+        });
+  }
+
+  void add_texel(std::uint32_t texel, Part& part) const {
+    if (input_.has_value(texel)) part.add(input_.numbers[texel], input_.map.area[texel]);
+  }
+
+  // Adds the texels x0…x1 of a row, which are all surface texels.
+  void add_chord(int y, int x0, int x1, Part& part) const {
+    const auto side = static_cast<std::size_t>(input_.map.blocks_per_side);
+    for (int x = x0; x <= x1;) {
+      const int end = std::min(x / kBlockSize * kBlockSize + kBlockSize - 1, x1);
+      const std::uint32_t slot =
+          input_.map.slot_of_block[static_cast<std::size_t>(y / kBlockSize) * side +
+                                   static_cast<std::size_t>(x / kBlockSize)];
+      const auto row = slot * 8 + static_cast<std::uint32_t>(y % kBlockSize);
+      if (end - x == kBlockSize - 1) {
+        part.add(parts_[row]);
+      } else {
+        for (int i = x % kBlockSize; i <= end % kBlockSize; ++i)
+          add_texel(row * 8 + static_cast<std::uint32_t>(i), part);
+      }
+      x = end + 1;
+    }
+  }
+
+ private:
+  const Input& input_;
+  std::vector<Part> parts_;
+};
+
+// Adds the texels of a disc with add_texel(texel) and add_chord(y, x0, x1). `clear` takes back what
+// was added.
+template <class Chord, class Texel, class Clear>
+void add_disc(const Input& input, TexelDiscs& discs, double disc_area, std::uint32_t texel,
+              Chord add_chord, Texel add_texel, Clear clear) {
+  clear();
+  if (discs.for_each_chord(texel, [&](int y, int x0, int x1) {
+        if (!input.rows.are_connected(y, x0, x1)) return false;
+        add_chord(y, x0, x1);
+        return true;
+      }))
+    return;
+  clear();
+  double area = 0;
+  discs.for_each_in_ball(texel, [&](std::uint32_t other) {
+    area += double{input.map.area[other]};
+    add_texel(other);
+  });
+  // A ball with more surface than a disc reaches through a fold.
+  constexpr double kFolded = 1.1;
+  if (area <= kFolded * disc_area) return;
+  clear();
+  discs.for_each_on_paths(texel, add_texel);
+}
+
+// Returns the area of the texels in a flat disc, with some more at its rim.
+double disc_area(const mesh::SurfaceMap& map, double radius) {
+  const double outer = radius + mean_texel_size(map) / 2;
+  return std::numbers::pi * outer * outer;
+}
+
+template <class Part>
+class PartDiscs {
+ public:
+  PartDiscs(const Input& input, const RowParts<Part>& parts, const mesh::TexelGraph& graph,
+            double radius)
+      : input_(input),
+        parts_(parts),
+        discs_(input.map, graph, radius),
+        disc_area_(disc_area(input.map, radius)) {}
+
+  std::optional<float> at(std::uint32_t texel) {
+    Part part;
+    add_disc(
+        input_, discs_, disc_area_, texel,
+        [&](int y, int x0, int x1) { parts_.add_chord(y, x0, x1, part); },
+        [&](std::uint32_t other) { parts_.add_texel(other, part); }, [&] { part = {}; });
+    return part.result();
+  }
+
+ private:
+  const Input& input_;
+  const RowParts<Part>& parts_;
+  TexelDiscs discs_;
+  const double disc_area_;
+};
+
+class VarietyDiscs {
+ public:
+  VarietyDiscs(const Input& input, const mesh::TexelGraph& graph, double radius)
+      : input_(input), discs_(input.map, graph, radius), disc_area_(disc_area(input.map, radius)) {}
+
+  std::optional<float> at(std::uint32_t texel) {
+    add_disc(
+        input_, discs_, disc_area_, texel,
+        [&](int y, int x0, int x1) {
+          input_.rows.for_each_run(y, x0, x1, [&](const TexelValue& value, std::uint32_t area) {
+            if (value.valid) found_.add(value, area);
+          });
+        },
+        [&](std::uint32_t other) {
+          if (const TexelValue value = input_.values.of(other); value.valid) found_.add(value, 1);
+        },
+        [&] { found_.clear(); });
+    return found_.count() == 0 ? std::nullopt : std::optional(static_cast<float>(found_.count()));
+  }
+
+ private:
+  const Input& input_;
+  TexelDiscs discs_;
+  const double disc_area_;
+  ValueAreas found_;
+};
+
+// Computes `make_discs().at(texel)` for each surface texel, with one object for each part of the
+// work.
+template <class MakeDiscs>
+Result<SurfaceValues> compute_discs(const Input& input, Progress& progress, int threads,
+                                    MakeDiscs make_discs) {
+  constexpr std::size_t kSlotsAtOnce = 256;
+  const std::size_t slots = input.map.block_of_slot.size();
+  SurfaceValues result{std::vector<std::uint32_t>(slots * 64), std::vector<std::uint64_t>(slots)};
+  const std::size_t parts = (slots + kSlotsAtOnce - 1) / kSlotsAtOnce;
+  std::atomic<std::size_t> done{0};
+  mesh::parallel_for(threads, static_cast<int>(parts), [&](int number) {
+    auto discs = make_discs();
+    const std::size_t first = static_cast<std::size_t>(number) * kSlotsAtOnce;
+    for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot) {
+      for (std::uint64_t left = input.map.surface_mask[slot]; left != 0; left &= left - 1) {
+        if (progress.cancelled()) return;
+        const auto texel = static_cast<std::uint32_t>(
+            slot * 64 + static_cast<std::size_t>(std::countr_zero(left)));
+        if (const auto value = discs.at(texel))
+          result.set(texel, {std::bit_cast<std::uint32_t>(*value), true});
+      }
+    }
+    progress.report(double(++done) / double(parts), "Comparing neighborhoods");
+  });
+  if (progress.cancelled()) return cancelled_problem();
+  return result;
+}
+
+template <class Part>
+Result<SurfaceValues> part_values(const Input& input, double radius, const mesh::TexelGraph& graph,
+                                  Progress& progress, int threads) {
+  const RowParts<Part> parts(input, threads);
+  return compute_discs(input, progress, threads,
+                       [&] { return PartDiscs<Part>(input, parts, graph, radius); });
+}
+
+std::vector<float> decoded(const SurfaceValues& values, ValueType type) {
+  std::vector<float> numbers(values.bits.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    numbers[i] = static_cast<float>(decode_value(type, values.bits[i]));
+  return numbers;
+}
+
+tl::unexpected<Error> radius_too_large(const mesh::SurfaceMap& map, const std::string& field) {
+  char largest[48];
+  std::snprintf(largest, sizeof largest, "%.3g", 0.999 * max_focal_radius(map));
+  return fail(ErrorCode::invalid, "Radius too large",
+              "The radius of a neighborhood on this layer can be at most " + std::string(largest) +
+                  " model units, which is 40 texels. Choose a smaller radius, or a layer with "
+                  "larger texels (`resolution`).",
+              field);
+}
+
+}  // namespace
+
+double max_focal_radius(const mesh::SurfaceMap& map) {
+  return kMaxDiscTexels * mean_texel_size(map);
+}
+
+Result<SurfaceValues> focal_values(Focal statistic, const SurfaceValues& values, ValueType type,
+                                   double radius, const mesh::SurfaceMap& map,
+                                   const mesh::TexelGraph& graph, const std::string& field,
+                                   Progress& progress, int threads) {
+  if (map.surface_texels == 0) return values;
+  const double largest = max_focal_radius(map);
+  if (!(radius <= largest && largest > 0)) return radius_too_large(map, field);
+  const RowRuns rows(values, map, graph, progress, threads);
+  Input input{values, rows, map, {}};
+  if (statistic != Focal::variety) input.numbers = decoded(values, type);
+  switch (statistic) {
+    case Focal::mean: return part_values<MeanPart>(input, radius, graph, progress, threads);
+    case Focal::min: return part_values<MinPart>(input, radius, graph, progress, threads);
+    case Focal::max: return part_values<MaxPart>(input, radius, graph, progress, threads);
+    case Focal::variety: break;
+  }
+  return compute_discs(input, progress, threads,
+                       [&] { return VarietyDiscs(input, graph, radius); });
+}
+
+}  // namespace strata::query

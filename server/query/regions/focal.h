@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+
+#include "core/error.h"
+#include "domain/layers/layer.h"
+#include "query/regions/surface_values.h"
+
+namespace strata {
+class Progress;
+}
+namespace strata::mesh {
+struct TexelGraph;
+}
+
+namespace strata::query {
+
+// Statistics of the values in the neighborhood of each texel.
+enum class Focal {
+  mean,     // weighted by the true area of the texels
+  min,      //
+  max,      //
+  variety,  // the number of distinct values
+};
+
+// The largest radius of `focal_values`, in model units: kMaxDiscTexels texels of the mean size.
+double max_focal_radius(const mesh::SurfaceMap& map);
+
+// Returns a statistic of the values within `radius` (model units) along the surface around each
+// surface texel, as f32. Texels without a value do not count. The result has no value where no
+// texel in the neighborhood has one, also where the texel itself has none but another has one.
+// `type` is the type of `values`.
+//
+// The neighborhood is that of query/regions/texel_discs. Near a seam or an edge, distances are
+// straight through space, and at folds and thin walls, where that reaches too much surface, along
+// paths. On curved surfaces within a chart, it is exact to first order.
+//
+// Sums of 8 texels make the time per texel proportional to the radius. It grows with the square of
+// the radius near seams, and for the variety of layers with many values. Needs about 24 bytes of
+// memory per texel of the map. The result does not depend on the number of threads. Fails when
+// cancelled, and with an `invalid` error at `field` for a radius above max_focal_radius. The radius
+// must not be negative.
+Result<SurfaceValues> focal_values(Focal statistic, const SurfaceValues& values, ValueType type,
+                                   double radius, const mesh::SurfaceMap& map,
+                                   const mesh::TexelGraph& graph, const std::string& field,
+                                   Progress& progress, int threads = 1);
+
+}  // namespace strata::query

@@ -1,0 +1,229 @@
+// Statistics of neighborhoods: brute force on a flat sheet with and without seams, and folds.
+#include "query/regions/focal.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "core/progress.h"
+#include "query/regions/texel_discs.h"
+#include "support/cut_shapes.h"
+#include "support/cut_sheet.h"
+
+namespace strata::query {
+namespace {
+
+using test::kSheetHeight;
+using test::kSheetWidth;
+using test::SheetCuts;
+using test::Surface;
+
+constexpr Focal kAll[] = {Focal::mean, Focal::min, Focal::max, Focal::variety};
+using ValueAt = std::function<std::optional<float>(std::uint32_t)>;
+
+SurfaceValues put(const Surface& surface, const ValueAt& value_at) {
+  const std::size_t slots = surface.map.block_of_slot.size();
+  SurfaceValues values{std::vector<std::uint32_t>(slots * 64), std::vector<std::uint64_t>(slots)};
+  test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+    if (const auto value = value_at(texel))
+      values.set(texel, {std::bit_cast<std::uint32_t>(*value), true});
+  });
+  return values;
+}
+
+std::optional<float> number_at(const SurfaceValues& values, std::uint32_t texel) {
+  const TexelValue value = values.of(texel);
+  if (!value.valid) return std::nullopt;
+  return std::bit_cast<float>(value.bits);
+}
+
+Result<SurfaceValues> compute(Focal statistic, const Surface& surface, const SurfaceValues& values,
+                              double radius, int threads = 2) {
+  Progress progress;
+  return focal_values(statistic, values, ValueType::f32, radius, surface.map, surface.graph, "e",
+                      progress, threads);
+}
+
+// The values of the sheet by column and row.
+using Grid = std::vector<std::vector<std::optional<float>>>;
+
+std::optional<float> by_brute_force(Focal statistic, const Grid& grid, glm::ivec2 at,
+                                    double radius) {
+  std::vector<float> found;
+  const int reach = static_cast<int>(radius);
+  for (int y = std::max(0, at.y - reach); y <= std::min(kSheetHeight - 1, at.y + reach); ++y)
+    for (int x = std::max(0, at.x - reach); x <= std::min(kSheetWidth - 1, at.x + reach); ++x)
+      if (std::hypot(x - at.x, y - at.y) <= radius && grid[std::size_t(y)][std::size_t(x)])
+        found.push_back(*grid[std::size_t(y)][std::size_t(x)]);
+  if (found.empty()) return std::nullopt;
+  switch (statistic) {
+    case Focal::mean: {
+      double sum = 0;
+      for (const float value : found) sum += double{value};
+      return static_cast<float>(sum / double(found.size()));
+    }
+    case Focal::min: return *std::ranges::min_element(found);
+    case Focal::max: return *std::ranges::max_element(found);
+    case Focal::variety: break;
+  }
+  return static_cast<float>(std::set(found.begin(), found.end()).size());
+}
+
+// A few classes, unpainted areas, and one value of another size.
+Grid noisy_grid() {
+  std::mt19937 random(3);
+  Grid grid(kSheetHeight, std::vector<std::optional<float>>(kSheetWidth));
+  for (int y = 0; y < kSheetHeight; ++y)
+    for (int x = 0; x < kSheetWidth; ++x)
+      if (x < 150 || random() % 50 == 0)
+        grid[std::size_t(y)][std::size_t(x)] =
+            static_cast<float>(random() % 7 + static_cast<unsigned>(x / 20));
+  grid[40][20] = 1e30f;
+  return grid;
+}
+
+TEST(Focal, equals_brute_force_on_a_sheet_with_and_without_seams) {
+  const Grid grid = noisy_grid();
+  for (const double radius : {0.0, 1.0, 2.5, 9.0})
+    for (const Focal statistic : kAll) {
+      std::map<std::pair<int, int>, std::optional<float>> expected;
+      for (const SheetCuts& cuts :
+           {SheetCuts{}, SheetCuts{{96}, {64}}, SheetCuts{{40, 96, 104, 152}, {24, 64}}}) {
+        const Surface sheet = test::cut_sheet(cuts);
+        const auto values = put(sheet, [&](std::uint32_t texel) {
+          const glm::ivec2 at = test::sheet_place(sheet, texel);
+          return grid[std::size_t(at.y)][std::size_t(at.x)];
+        });
+        const auto result = compute(statistic, sheet, values, radius);
+        ASSERT_TRUE(result);
+        test::for_each_surface_texel(sheet.map, [&](std::uint32_t texel) {
+          const glm::ivec2 at = test::sheet_place(sheet, texel);
+          auto [known, is_new] = expected.try_emplace({at.x, at.y});
+          if (is_new) known->second = by_brute_force(statistic, grid, at, radius);
+          const auto found = number_at(*result, texel);
+          ASSERT_EQ(found.has_value(), known->second.has_value()) << at.x << ' ' << at.y;
+          if (found) {
+            ASSERT_NEAR(*found, *known->second, 1e-5f * std::abs(*known->second))
+                << at.x << ' ' << at.y << " radius " << radius;
+          }
+        });
+      }
+    }
+}
+
+// A wall of two sides with a rim at s = 0.5, unfolded along s. Its values are 1 and 3 by side.
+constexpr double kHeight = 1, kThickness = 0.02, kLength = 2 * kHeight + kThickness;
+test::Shape wall() {
+  return {202, 100,
+          [](double s, double t) {
+            const double along = s * kLength;
+            if (along <= kHeight) return glm::dvec3(0, t, along);
+            if (along < kHeight + kThickness) return glm::dvec3(along - kHeight, t, kHeight);
+            return glm::dvec3(kThickness, t, kLength - along);
+          },
+          [](double s, double t) { return glm::dvec2(s * kLength, t); }};
+}
+double along_wall(glm::dvec3 p) {
+  if (p.z >= kHeight - 1e-6) return kHeight + p.x;
+  return p.x < kThickness / 2 ? p.z : kLength - p.z;
+}
+
+TEST(Focal, does_not_reach_through_a_wall_or_far_around_its_rim) {
+  // One chart, and charts whose seams are near all texels.
+  for (const test::Cuts cuts : {test::Cuts{1, 1, 0, 1}, test::Cuts{20, 10, 0, 1}}) {
+    const Surface surface = test::cut_surface(wall(), cuts, 256);
+    const auto along = [&](std::uint32_t texel) {
+      return along_wall(surface.geometry.origin +
+                        glm::dvec3(surface.map.position(texel / 64, int(texel % 64))));
+    };
+    const auto values = put(surface, [&](std::uint32_t texel) {
+      return std::optional(along(texel) < kLength / 2 ? 1.0f : 3.0f);
+    });
+    const double radius = 12 * mean_texel_size(surface.map);
+    ASSERT_GT(radius, 2 * kThickness);
+    const auto means = compute(Focal::mean, surface, values, radius);
+    ASSERT_TRUE(means);
+    int near = 0;
+    test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+      const glm::vec3 p = surface.map.position(texel / 64, int(texel % 64));
+      const double t = double{p.y} + surface.geometry.origin.y;
+      const double beyond = std::abs(along(texel) - kLength / 2) / radius;
+      if (t < radius || t > 1 - radius) return;
+      // The part of a disc beyond a straight line.
+      const double share =
+          beyond >= 1
+              ? 0
+              : (std::acos(beyond) - beyond * std::sqrt(1 - beyond * beyond)) / std::numbers::pi;
+      const double right = along(texel) < kLength / 2 ? 1 + 2 * share : 3 - 2 * share;
+      near += share > 0;
+      ASSERT_NEAR(*number_at(*means, texel), right, 0.25) << beyond << " at " << t;
+    });
+    EXPECT_GT(near, 1000);
+  }
+}
+
+TEST(Focal, weighs_the_mean_by_area) {
+  // Texels of a chart with a smaller scale are larger on the surface.
+  const test::Shape sheet{64, 64, [](double s, double t) { return glm::dvec3(s, t, 0); },
+                          [](double s, double t) { return glm::dvec2(s, t); }};
+  const Surface surface = test::cut_surface(sheet, {2, 1, 0, 0.5}, 512);
+  const auto values = put(surface, [&](std::uint32_t texel) {
+    return std::optional(
+        surface.map.position(texel / 64, int(texel % 64)).x + surface.geometry.origin.x < 0.5
+            ? 0.0f
+            : 1.0f);
+  });
+  const double radius = 20 * mean_texel_size(surface.map);
+  const auto means = compute(Focal::mean, surface, values, radius);
+  ASSERT_TRUE(means);
+  test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+    const glm::dvec3 p =
+        surface.geometry.origin + glm::dvec3(surface.map.position(texel / 64, int(texel % 64)));
+    if (std::abs(p.x - 0.5) > radius / 20 || std::abs(p.y - 0.5) > 0.5 - radius) return;
+    EXPECT_NEAR(*number_at(*means, texel), 0.5, 0.06);
+  });
+}
+
+TEST(Focal, does_not_depend_on_threads_and_can_be_cancelled) {
+  const Surface sheet = test::cut_sheet({{96}, {64}});
+  const Grid grid = noisy_grid();
+  const auto values = put(sheet, [&](std::uint32_t texel) {
+    const glm::ivec2 at = test::sheet_place(sheet, texel);
+    return grid[std::size_t(at.y)][std::size_t(at.x)];
+  });
+  for (const Focal statistic : kAll)
+    EXPECT_EQ(compute(statistic, sheet, values, 5, 1)->bits,
+              compute(statistic, sheet, values, 5, 4)->bits);
+  Progress progress;
+  progress.cancel();
+  EXPECT_EQ(
+      focal_values(Focal::mean, values, ValueType::f32, 5, sheet.map, sheet.graph, "e", progress)
+          .error()
+          .code,
+      ErrorCode::cancelled);
+}
+
+TEST(Focal, refuses_a_radius_of_more_than_40_texels) {
+  const Surface sheet = test::cut_sheet({});
+  const auto values = put(sheet, [](std::uint32_t) { return std::optional(1.0f); });
+  EXPECT_NEAR(max_focal_radius(sheet.map), 40, 1e-3);
+  for (const double radius : {40.1, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
+    const auto refused = compute(Focal::max, sheet, values, radius);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().field, "e");
+    EXPECT_THAT(refused.error().detail, testing::HasSubstr("40 texels"));
+  }
+}
+
+}  // namespace
+}  // namespace strata::query
