@@ -49,6 +49,7 @@ Comments& Store::comments() { return impl_->comments; }
 NamedParts& Store::views() { return impl_->views; }
 NamedParts& Store::tours() { return impl_->tours; }
 NamedParts& Store::snapshots() { return impl_->snapshots; }
+NamedParts& Store::selections() { return impl_->selections; }
 Jobs& Store::jobs() { return impl_->jobs; }
 Nodes& Store::nodes() { return impl_->nodes; }
 Kiosks& Store::kiosks() { return impl_->kiosks; }

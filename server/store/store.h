@@ -94,6 +94,7 @@ class Store {
   NamedParts& views();  // saved views (store/content/named_parts.h)
   NamedParts& tours();  // tours (the same header)
   NamedParts& snapshots();
+  NamedParts& selections();
   Jobs& jobs();
   Nodes& nodes();
   Kiosks& kiosks();

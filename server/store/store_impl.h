@@ -151,6 +151,7 @@ struct Store::Impl {
   Answers answers{pool};
   std::int64_t schema_version = 0, readable_from = 0;
   NamedParts snapshots{pool, NamedParts::kSnapshots};
+  NamedParts selections{pool, NamedParts::kSelections};
 
   template <class Answer, class Work>
   auto change(const Answer& answer, Work&& work, const PgLimits& limits = kRequestLimits)

@@ -1,5 +1,7 @@
 #include "domain/scene/surveyed_object.h"
 
+#include <algorithm>
+
 #include "core/text/edtf.h"
 
 namespace strata {
@@ -36,12 +38,24 @@ Result<void> check_survey(bool has_object, const std::string& date) {
   if (!has_object && !date.empty())
     return fail(ErrorCode::invalid, "Object missing",
                 "Only a model of an object has a survey date. Also name the object.", "object");
-  if (!date.empty() && !is_survey_date(date))
-    return fail(ErrorCode::invalid, "Invalid survey date",
-                "The date of a survey must be a year, a month or a day, such as 2019, 2019-05 or "
-                "2019-05-01.",
-                "survey_date");
-  return {};
+  return date.empty() ? Result<void>() : check_survey_date(date, "survey_date");
+}
+
+Result<void> check_survey_date(const std::string& date, const std::string& field) {
+  if (is_survey_date(date)) return {};
+  return fail(ErrorCode::invalid, "Invalid survey date",
+              "The date of a survey must be a year, a month or a day, such as 2019, 2019-05 or "
+              "2019-05-01.",
+              field);
+}
+
+bool may_be_within(const std::string& date, const std::string& from, const std::string& to) {
+  // The parts that both dates have. ISO 8601 sorts dates of the same length as texts.
+  const auto compare = [&date](const std::string& limit) {
+    const std::size_t common = std::min(date.size(), limit.size());
+    return date.compare(0, common, limit, 0, common);
+  };
+  return compare(from) >= 0 && compare(to) <= 0;
 }
 
 }  // namespace strata

@@ -19,7 +19,7 @@ struct StoredJob {
   JobId id = 0;
   ProjectId project_id = 0;
   std::string user;  // the user who started it; empty for no particular user
-  std::string kind;  // "import", "layers", "look", "figure"
+  std::string kind;  // "import", "layers", "look", "figure", "regions"
   // "done", "failed", "cancelled"; "lost": the server ended before the job did
   std::string state;
   nlohmann::json problem;  // code, title, detail, field; null if there was no problem

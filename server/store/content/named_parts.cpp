@@ -35,22 +35,27 @@ void put_for(std::string& text, std::string_view word, std::string_view value) {
 
 }  // namespace
 
-// Replaces `TABLE` by the table of the kind, and `PART` by the columns that `read_part` reads.
+// Replaces `TABLE` by the table of the kind, `PART` by the columns that `read_part` reads, and
+// `READABLE_BY` by the condition for parts that a user can read.
 std::string NamedParts::sql(std::string text) const {
   put_for(text, "TABLE", kind_.table);
+  put_for(text, "READABLE_BY",
+          "(content ->> 'audience') IS DISTINCT FROM 'personal' OR user_name =");
   put_for(text, "PART", "id, model_id, slug, name, text, content, user_name, time, version");
   return text;
 }
 
 Result<NamedParts::Page> NamedParts::of_model(ModelId model_id, int limit, int offset,
-                                              std::int64_t after) {
+                                              std::int64_t after, const std::string& reader) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto total = STRATA_TRY(connection.query(
-        sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(), Params().id(model_id)));
+        sql("SELECT count(*) FROM TABLE WHERE model_id = $1 AND (READABLE_BY $2)").c_str(),
+        Params().id(model_id).text(reader)));
     auto rows = STRATA_TRY(connection.query(
-        sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id > $4 ORDER BY id LIMIT $2 OFFSET $3")
+        sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id > $4 AND (READABLE_BY $5) "
+            "ORDER BY id LIMIT $2 OFFSET $3")
             .c_str(),
-        Params().id(model_id).integer(limit).integer(offset).integer(after)));
+        Params().id(model_id).integer(limit).integer(offset).integer(after).text(reader)));
     Page page;
     page.total = total.integer(0, 0);
     for (int i = 0; i < rows.rows(); ++i) page.parts.push_back(read_part(rows, i));
@@ -68,16 +73,20 @@ Result<std::map<NamedPartId, std::string>> NamedParts::slugs(ModelId model_id) {
   });
 }
 
-Result<NamedPart> NamedParts::find(ModelId model_id, const std::string& ref) {
+Result<NamedPart> NamedParts::find(ModelId model_id, const std::string& ref,
+                                   const std::string& reader) {
   if (!check_text(ref, kind_.name)) return no_such(kind_.name, ref);
   return pool_.read([&](PgConnection& connection) -> Result<NamedPart> {
     const auto id = id_of<NamedPartId>(ref);
     auto rows =
-        id ? connection.query(sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id = $2").c_str(),
-                              Params().id(model_id).id(*id))
+        id ? connection.query(
+                 sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id = $2 AND (READABLE_BY $3)")
+                     .c_str(),
+                 Params().id(model_id).id(*id).text(reader))
            : connection.query(
-                 sql("SELECT PART FROM TABLE WHERE model_id = $1 AND slug = $2").c_str(),
-                 Params().id(model_id).text(ref));
+                 sql("SELECT PART FROM TABLE WHERE model_id = $1 AND slug = $2 AND (READABLE_BY $3)")
+                     .c_str(),
+                 Params().id(model_id).text(ref).text(reader));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return no_such(kind_.name, ref);
     return read_part(*rows, 0);

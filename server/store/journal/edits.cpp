@@ -100,6 +100,15 @@ Result<JournalState> Journal::state(ModelId model_id, std::span<const Uuid> ids)
   });
 }
 
+Result<void> Journal::wait_for_commits(ModelId model_id) {
+  return pool_.write([&](PgConnection& connection) -> Result<void> {
+    // Each transaction of the writer locks this row first.
+    STRATA_TRY(connection.query("SELECT 1 FROM all_models WHERE id = $1 FOR SHARE",
+                                Params().id(model_id)));
+    return {};
+  });
+}
+
 Result<std::vector<std::int64_t>> Journal::undoable(LayerId layer_id, const std::string& user,
                                                     bool pending_only) {
   STRATA_TRY(check_text(user, "user"));

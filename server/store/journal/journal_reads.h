@@ -75,6 +75,10 @@ class Journal {
   Result<HistoryPage> history(LayerId layer_id, int limit, int offset,
                               std::optional<std::int64_t> before = {});
   Result<JournalState> state(ModelId model_id, std::span<const Uuid> ids);
+  // Waits until no transaction is writing edits of the model. A commit may still be running in the
+  // database although its writer has given up. Returns an Error if this takes longer than the
+  // request limit.
+  Result<void> wait_for_commits(ModelId model_id);
   // Returns what rooms of other nodes compare (tail.cpp).
   Result<ModelState> model_state(ModelId model_id);
   std::unique_ptr<ModelStates> states();  // returns a new reader

@@ -20,8 +20,8 @@ constexpr PgLimits kReaderLimits{milliseconds(5000), milliseconds(5000), millise
 // ids.
 constexpr std::int64_t kAssignedAgain = 1000;
 
-constexpr std::array<std::string_view, 8> kKinds{"records",  "table", "comment", "view",
-                                                 "snapshot", "tool",  "access",  "kiosk"};
+constexpr std::array<std::string_view, 9> kKinds{
+    "records", "table", "comment", "view", "snapshot", "selection", "tool", "access", "kiosk"};
 constexpr std::array<std::string_view, 3> kEvents{"created", "changed", "deleted"};
 
 template <class Value, std::size_t Count>

@@ -21,7 +21,7 @@ class PgConnection;
 // messages (db/migrations/000045_node_messages.sql). A message identifies the changed objects, but
 // does not contain their data.
 struct NodeMessage {
-  enum class Kind { records, table, comment, view, snapshot, tool, access, kiosk };
+  enum class Kind { records, table, comment, view, snapshot, selection, tool, access, kiosk };
   enum class Event { created, changed, deleted };
   std::int64_t id = 0;
   std::chrono::system_clock::time_point time;

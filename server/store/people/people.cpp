@@ -313,6 +313,10 @@ Result<void> Accounts::remove(const std::string& name) {
     auto ended =
         run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person.name));
     if (!ended) return ended;
+    STRATA_TRY(run(connection,
+                   "DELETE FROM selections WHERE user_name = $1 AND content ->> 'audience' = "
+                   "'personal'",
+                   Params().text(person.name)));
     for (const char* sql :
          {"DELETE FROM project_members WHERE user_id = $1",
           "DELETE FROM group_people WHERE user_id = $1", "DELETE FROM sign_ons WHERE user_id = $1",
@@ -328,6 +332,7 @@ Result<void> Accounts::remove(const std::string& name) {
          "UPDATE all_models SET binned_by = $2 WHERE binned_by = $1",
          "UPDATE all_layers SET binned_by = $2 WHERE binned_by = $1",
          "UPDATE snapshots SET user_name = $2 WHERE user_name = $1",
+         "UPDATE selections SET user_name = $2 WHERE user_name = $1",
          "UPDATE tours SET user_name = $2 WHERE user_name = $1",
          "UPDATE kiosks SET user_name = $2 WHERE user_name = $1",
          "UPDATE jobs SET user_name = $2 WHERE user_name = $1"})

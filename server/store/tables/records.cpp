@@ -173,6 +173,39 @@ Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection
   return std::optional(std::move(rows));
 }
 
+// `undone_by` is stored with the entry that is undone. Empty: the entry is redone.
+Result<TableChange> apply_undo(PgConnection& connection, OpenTable& open, PlannedUndo undo,
+                               std::optional<std::int64_t> undone_by) {
+  auto change = STRATA_TRY(apply_edit(connection, open, std::move(undo.edit)));
+  if (!change.problems.empty()) {
+    Error problem = change.problems.front().problem;
+    return fail(ErrorCode::conflict, undone_by ? "Cannot undo" : "Cannot redo", problem.detail,
+                problem.field);
+  }
+  STRATA_TRY(connection.query(
+      "UPDATE table_edits SET in_force = $3, undone_by = $4 WHERE table_id = $1 AND sequence = $2",
+      Params()
+          .id(open.table.id)
+          .integer(undo.plan.edit)
+          .boolean(!undone_by)
+          .optional_integer(undone_by)));
+  return change;
+}
+
+// Returns a `conflict` error if a later entry changes a record of this entry.
+Result<void> check_unchanged_since(PgConnection& connection, TableId table_id,
+                                   std::int64_t sequence) {
+  const auto later = STRATA_TRY(connection.query(
+      "SELECT c.subject_id FROM table_changes e JOIN table_changes c ON c.table_id = e.table_id AND c.subject = e.subject "
+      "AND c.subject_id = e.subject_id AND c.sequence > e.sequence "
+      "WHERE e.table_id = $1 AND e.sequence = $2 AND e.subject = 'record' ORDER BY c.subject_id LIMIT 1",
+      Params().id(table_id).integer(sequence)));
+  if (later.rows() == 0) return {};
+  return fail(ErrorCode::conflict, "Record was changed",
+              "Record " + std::to_string(later.integer(0, 0)) +
+                  " has been changed since. Read the records again.");
+}
+
 }  // namespace
 
 Result<TableChange> Records::write(TableId table_id, const WriteRecords& request,
@@ -405,22 +438,24 @@ Result<TableChange> Tables::undo(TableId table_id, const std::string& user, bool
     auto open = STRATA_TRY(lock_table(connection, table_id));
     if (open.table.sequence != planned_at) return stale("table");
     auto undo = STRATA_TRY(store::plan_undo(connection, open, user, redo));
-    const std::int64_t sequence = open.table.sequence + 1;
-    auto change = STRATA_TRY(apply_edit(connection, open, std::move(undo.edit)));
-    if (!change.problems.empty()) {
-      Error problem = change.problems.front().problem;
-      return fail(ErrorCode::conflict, redo ? "Cannot redo" : "Cannot undo", problem.detail,
-                  problem.field);
-    }
-    STRATA_TRY(connection.query(
-        "UPDATE table_edits SET in_force = $3, undone_by = $4 WHERE table_id = $1 AND sequence = $2",
-        Params()
-            .id(table_id)
-            .integer(undo.plan.edit)
-            .boolean(redo)
-            .optional_integer(redo ? std::nullopt : std::optional(sequence))));
-    return change;
+    return apply_undo(connection, open, std::move(undo),
+                      redo ? std::nullopt : std::optional(open.table.sequence + 1));
   };
+  return change(pool_, answer, work, kBulkLimits);
+}
+
+Result<TableChange> Tables::undo_entry(TableId table_id, std::int64_t sequence,
+                                       const std::string& user) {
+  STRATA_TRY(check_text(user, "user"));
+  const auto work = [&](PgConnection& connection) -> Result<TableChange> {
+    auto open = STRATA_TRY(lock_table(connection, table_id));
+    STRATA_TRY(check_unchanged_since(connection, table_id, sequence));
+    auto undo = STRATA_TRY(store::plan_undo(connection, open, user, false, sequence));
+    // An entry that undid itself is not redone (`edit_to_flip`).
+    return apply_undo(connection, open, std::move(undo), sequence);
+  };
+  IdempotentResponse<TableChange> answer;
+  answer.user = user;
   return change(pool_, answer, work, kBulkLimits);
 }
 

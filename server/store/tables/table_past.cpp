@@ -13,18 +13,24 @@ namespace {
 Cells cells_from(const nlohmann::json& json) { return json.get<Cells>(); }
 
 // Returns the entry that an undo or redo would change. For an undo, it is the newest entry of the
-// user in force. For a redo, it is the entry that the newest undo disabled, unless a change that
-// the user made after that undo is in force (as for layers, store/journal/edits.cpp).
+// user in force, or `entry`, if it is one of these. For a redo, it is the entry that the newest
+// undo disabled, unless a change that the user made after that undo is in force (as for layers,
+// store/journal/edits.cpp). Entries of Tables::undo_entry, whose `undone_by` is their own sequence,
+// are never redone.
 Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, TableId table_id,
-                                                 const std::string& user, bool redo) {
+                                                 const std::string& user, bool redo,
+                                                 std::optional<std::int64_t> entry) {
+  Params params;
+  params.id(table_id).text(user);
+  if (!redo) params.optional_integer(entry);
   auto row = STRATA_TRY(connection.query(
       redo
           ? "SELECT e.sequence FROM table_edits e WHERE e.table_id = $1 AND e.user_name = $2 AND e.writer AND NOT e.in_force "
-            "AND NOT EXISTS (SELECT 1 FROM table_edits n WHERE n.table_id = $1 AND n.user_name = $2 AND n.writer AND n.in_force "
+            "AND e.undone_by > e.sequence AND NOT EXISTS (SELECT 1 FROM table_edits n WHERE n.table_id = $1 AND n.user_name = $2 AND n.writer AND n.in_force "
             "AND n.sequence > e.undone_by) ORDER BY e.undone_by DESC LIMIT 1"
           : "SELECT sequence FROM table_edits WHERE table_id = $1 AND user_name = $2 AND writer AND in_force "
-            "ORDER BY sequence DESC LIMIT 1",
-      Params().id(table_id).text(user)));
+            "AND ($3::bigint IS NULL OR sequence = $3) ORDER BY sequence DESC LIMIT 1",
+      params));
   if (row.rows() == 0) return std::optional<std::int64_t>();
   return std::optional(row.integer(0, 0));
 }
@@ -190,8 +196,9 @@ Result<TableHistory> read_history(PgConnection& connection, TableId table_id, Ro
 }
 
 Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
-                              const std::string& user, bool redo) {
-  auto edit = STRATA_TRY(edit_to_flip(connection, open.table.id, user, redo));
+                              const std::string& user, bool redo,
+                              std::optional<std::int64_t> entry) {
+  auto edit = STRATA_TRY(edit_to_flip(connection, open.table.id, user, redo, entry));
   if (!edit)
     return redo
                ? fail(ErrorCode::conflict, "Nothing to redo",

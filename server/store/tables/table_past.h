@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/ids.h"
 #include "store/store.h"
 #include "store/tables/table_writer.h"
@@ -20,9 +22,11 @@ struct PlannedUndo {
   UndoPlan plan;
   TableEdit edit;
 };
-// Plans an undo or redo by the rule of domain/tables/cell_history. Returns a `conflict` error if
-// the user has nothing to undo or redo.
+// Plans an undo or redo by the rule of domain/tables/cell_history. With `entry`, plans to undo this
+// entry of the user instead of the newest one. Returns a `conflict` error if the user has nothing
+// to undo or redo.
 Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
-                              const std::string& user, bool redo);
+                              const std::string& user, bool redo,
+                              std::optional<std::int64_t> entry = {});
 
 }  // namespace strata::store

@@ -306,6 +306,11 @@ Result<TableChange> Tables::change_of(TableId table_id, std::int64_t sequence,
       else
         (cells.boolean(i, 2) ? change.created : change.deleted).push_back(id);
     }
+    if (!change.created.empty()) {
+      const auto gone = STRATA_TRY(missing_rows(connection, table_id, change.created));
+      std::erase_if(change.created,
+                    [&](const std::int64_t key) { return std::ranges::binary_search(gone, key); });
+    }
     if (change.columns_changed || change.created.size() + change.changed.size() > most_records)
       return change;
     std::vector<std::int64_t> keys = change.created;

@@ -88,8 +88,9 @@ class Tables {
   Result<TableHistory> history(TableId table_id, Role seen_by, std::optional<std::int64_t> key,
                                int limit, int offset, std::optional<std::int64_t> before = {});
   // Returns the change of an entry of the journal, with the current state of the table and of the
-  // records. If it changed the columns, or more than `most_records` records, `records` is empty.
-  // Returns `not_found` if the table or the entry does not exist.
+  // records. `created` contains only records that still exist. If it changed the columns, or more
+  // than `most_records` records, `records` is empty. Returns `not_found` if the table or the entry
+  // does not exist.
   Result<TableChange> change_of(TableId table_id, std::int64_t sequence, std::size_t most_records);
   // Plans to undo the newest entry of the user in force, or to redo the entry that was undone last.
   // Returns a `conflict` error if no such entry exists. `undo` returns a `stale` error if the table
@@ -98,6 +99,11 @@ class Tables {
   Result<TableChange> undo(TableId table_id, const std::string& user, bool redo,
                            std::int64_t planned_at,
                            const IdempotentResponse<TableChange>& answer = {});
+  // Undoes this entry of the user, also if the user or others have changed other parts of the table
+  // since. The user cannot redo it. Returns a `conflict` error if the entry is not in force, or if
+  // one of its records was changed since. The caller must check that no texel has the key of a
+  // record that the undo deletes.
+  Result<TableChange> undo_entry(TableId table_id, std::int64_t sequence, const std::string& user);
 
  private:
   Pool& pool_;

@@ -61,6 +61,18 @@ TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_the
   EXPECT_EQ(store->jobs().take_over(2)->size(), 2u);
 }
 
+TEST(Jobs, of_every_kind_are_stored) {
+  const auto dsn = test::fresh_database();
+  const auto store = test::open_store(dsn);
+  const auto project = store->projects().find("default")->id;
+  std::int64_t id = 40;
+  for (const char* kind : {"import", "layers", "look", "figure", "regions", "changes"}) {
+    const auto begun = store->jobs().begin(job_of(JobId(++id), project, kind));
+    EXPECT_TRUE(begun) << kind << ": " << begun.error().detail;
+  }
+  EXPECT_FALSE(store->jobs().begin(job_of(JobId(++id), project, "unknown")));
+}
+
 TEST(Jobs, of_a_node_with_a_lease_are_not_lost) {
   const auto dsn = test::fresh_database();
   const auto store = test::open_store(dsn);

@@ -79,6 +79,25 @@ TEST(Migrations, twenty_servers_starting_at_once_are_harmless) {
   EXPECT_EQ(connection.query("SELECT count(*) FROM projects")->integer(0, 0), 1);
 }
 
+TEST(Migrations, jobs_on_regions_of_earlier_programs_get_their_own_kind) {
+  test::TemporaryFolder folder;
+  copy_migrations(folder.path());
+  for (const auto& entry : fs::directory_iterator(STRATA_MIGRATIONS_DIR))
+    if (const auto name = entry.path().filename(); name >= "000053")
+      fs::remove(folder.path() / name);
+  const auto dsn = test::empty_database();
+  ASSERT_TRUE(Store::open({dsn, 1}, folder.path()));
+  auto connection = connect(dsn);
+  ASSERT_TRUE(connection.script(
+      "INSERT INTO jobs (id, project_id, user_name, kind, state, ended, result) SELECT v.id, p.id, '', v.kind, 'done', now(), v.result "
+      "FROM projects p, (VALUES (1, 'layers', '{\"report\": {\"operation\": \"sieve\"}}'::jsonb), "
+      "(2, 'layers', '{\"report\": {\"from\": 7}}'), (3, 'layers', '{\"layers\": [1]}'), (4, 'import', NULL)) "
+      "AS v (id, kind, result)"));
+  ASSERT_TRUE(Store::open({dsn, 1}, STRATA_MIGRATIONS_DIR));
+  EXPECT_EQ(connection.query("SELECT string_agg(kind, ' ' ORDER BY id) FROM jobs")->text(0, 0),
+            "regions layers layers import");
+}
+
 TEST(Migrations, a_newer_schema_is_refused) {
   const auto dsn = test::empty_database();
   test::open_store(dsn);

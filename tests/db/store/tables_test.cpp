@@ -261,6 +261,58 @@ TEST_F(Tables, undo_takes_back_what_one_person_did_and_leaves_what_others_did) {
             ErrorCode::stale);
 }
 
+TEST_F(Tables, one_entry_is_undone_after_later_ones_and_not_redone) {
+  const Table table = make("Units", {column("Name")});
+  const auto name_id = table.columns[0].id;
+  WriteRecords two;
+  two.records = {{{}, {{name_id, "a"}}}, {{}, {{name_id, "b"}}}};
+  const auto made = store_->records().write(table.id, two, "ana");
+  ASSERT_TRUE(made);
+  ASSERT_EQ(made->created, (std::vector<std::int64_t>{1, 2}));
+  ASSERT_TRUE(put(table, 3, {{"name", "c"}}, "ana"));
+  ASSERT_TRUE(put(table, 4, {{"name", "d"}}, "ben"));
+  EXPECT_EQ(store_->tables().undo_entry(table.id, made->sequence, "ben").error().code,
+            ErrorCode::conflict)
+      << "the entry of another user";
+  const auto undone = store_->tables().undo_entry(table.id, made->sequence, "ana");
+  ASSERT_TRUE(undone) << undone.error().detail;
+  EXPECT_EQ(undone->deleted, (std::vector<std::int64_t>{1, 2}));
+  EXPECT_EQ(content(table), (json{{"3", {{"name", "c"}}}, {"4", {{"name", "d"}}}}));
+  EXPECT_EQ(store_->tables().undo_entry(table.id, made->sequence, "ana").error().code,
+            ErrorCode::conflict)
+      << "an entry that is not in force";
+  EXPECT_FALSE(undo(table, "ana", true)) << "nothing to redo";
+  ASSERT_TRUE(undo(table, "ana", false));
+  EXPECT_FALSE(content(table).contains("3"));
+  ASSERT_TRUE(undo(table, "ana", true)) << "an undo of the user";
+  EXPECT_EQ(content(table)["3"], (json{{"name", "c"}}));
+  EXPECT_FALSE(undo(table, "ana", true));
+  EXPECT_EQ(content(table).size(), 2u);
+}
+
+TEST_F(Tables, one_entry_is_not_undone_after_a_change_of_one_of_its_records) {
+  const Table table = make("Units", {column("Name")});
+  const auto name_id = table.columns[0].id;
+  const auto create = [&] {
+    WriteRecords two;
+    two.records = {{{}, {{name_id, "a"}}}, {{}, {{name_id, "b"}}}};
+    return store_->records().write(table.id, two, "ana").value();
+  };
+  const auto refused = [&](const TableChange& made) {
+    const json before = content(table);
+    const auto undone = store_->tables().undo_entry(table.id, made.sequence, "ana");
+    ASSERT_FALSE(undone);
+    EXPECT_EQ(undone.error().code, ErrorCode::conflict);
+    EXPECT_EQ(content(table), before);
+  };
+  const TableChange changed = create();
+  ASSERT_TRUE(put(table, changed.created[1], {{"name", "c"}}, "ben"));
+  refused(changed);
+  const TableChange deleted = create();
+  ASSERT_TRUE(store_->records().remove(table.id, deleted.created[0], std::nullopt, "ben"));
+  refused(deleted);
+}
+
 TEST_F(Tables, the_past_is_read_with_the_columns_of_then) {
   const Table table = make("Units", {column("Name")});
   ASSERT_TRUE(put(table, 1, {{"name", "a"}}));  // 1

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <future>
 #include <thread>
 
 #include "db/journal_painter.h"
@@ -83,6 +84,17 @@ TEST_F(Writer, answers_come_in_the_order_of_submission_after_the_commit) {
   writer.drain();
   ASSERT_EQ(order.size(), 50u);
   EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+}
+
+TEST_F(Writer, readers_can_wait_for_a_commit_whose_writer_has_given_up) {
+  HeldModel held(dsn_, model_.id);
+  auto waiting =
+      std::async(std::launch::async, [&] { return store_->journal().wait_for_commits(model_.id); });
+  held.wait_until_someone_waits();
+  EXPECT_EQ(waiting.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
+  held.release();
+  EXPECT_TRUE(waiting.get());
+  EXPECT_TRUE(store_->journal().wait_for_commits(model_.id));
 }
 
 TEST_F(Writer, destruction_writes_what_waits) {

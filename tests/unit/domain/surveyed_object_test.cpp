@@ -32,6 +32,26 @@ TEST(SurveyDate, belongs_to_a_model_of_an_object_and_to_no_other) {
   EXPECT_EQ(refused_field(false, ""), "");
 }
 
+TEST(SurveyDate, may_be_within_a_period_if_a_day_of_both_is_the_same) {
+  EXPECT_TRUE(may_be_within("2019-05-01", "", ""));
+  EXPECT_TRUE(may_be_within("2019-05-01", "2019", "2019"));
+  EXPECT_TRUE(may_be_within("2019-12-31", "2018-03", "2019"));
+  EXPECT_TRUE(may_be_within("2019", "2019-05", "2019-06-02"));
+  EXPECT_TRUE(may_be_within("2019-05", "2019-05-17", ""));
+  EXPECT_FALSE(may_be_within("2019-05-01", "2019-05-02", ""));
+  EXPECT_FALSE(may_be_within("2019-05", "", "2019-04-30"));
+  EXPECT_FALSE(may_be_within("2018", "2019-05", ""));
+  EXPECT_FALSE(may_be_within("2020", "", "2019"));
+  EXPECT_FALSE(may_be_within("2019-06", "2020", "2018"));
+}
+
+TEST(SurveyDate, of_a_limit_is_checked_like_that_of_a_survey) {
+  EXPECT_TRUE(check_survey_date("2019-05", "from"));
+  const auto refused = check_survey_date("2019-13", "from");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().field, "from");
+}
+
 TEST(SurveyedObject, is_written_with_its_surveys) {
   const SurveyedObject object{7, 1, "Bust", 3, {{5, "bust-2019", "Bust 2019", "2019"}}};
   EXPECT_EQ(to_json(object), nlohmann::json::parse(R"({"id": 7, "name": "Bust", "surveys":
