@@ -35,6 +35,7 @@ class SheetLayout {
   int drawing_width() const { return width_; }
   int drawing_height() const { return height_; }
   glm::dvec2 drawing_mm() const { return sheet_.drawing.size; }
+  const Box& drawing() const { return sheet_.drawing; }  // on the paper
 
   // `north` is the direction of north on the paper (y down). It has no value if the angle between
   // north and the paper is too large. `place_labels` makes the labels.

@@ -22,7 +22,7 @@ constexpr std::size_t kMaxWaiting = 64;
 constexpr int kIdTries = 64;
 constexpr std::size_t kMaxRemembered = 1000;
 
-constexpr std::string_view kKinds[] = {"import", "layers", "look", "figure"};
+constexpr std::string_view kKinds[] = {"import", "layers", "look", "figure", "regions", "changes"};
 
 // Returns the Error of a job that ended because the server restarted.
 Error lost_problem(JobKind kind) {
@@ -45,6 +45,18 @@ Error lost_problem(JobKind kind) {
               kTitle,
               "The server restarted before this picture finished, and did not save any part of it. "
               "Start the job again.",
+              {}};
+    case JobKind::regions:
+      return {ErrorCode::unavailable,
+              kTitle,
+              "The server restarted before this job finished. If the history of the layer contains "
+              "no edit of this job, the layer was not changed. If the table contains new records "
+              "of this job without texels, delete them. Then start the job again.",
+              {}};
+    case JobKind::changes:
+      return {ErrorCode::unavailable,
+              kTitle,
+              "The server restarted before this comparison finished. Start the job again.",
               {}};
     case JobKind::figure: break;
   }
@@ -280,14 +292,16 @@ JobQueue::JobQueue(store::Jobs* store, std::optional<Uuid> node) : impl_(std::ma
   impl_->thread = std::thread([impl = impl_.get()] { impl->work_on_jobs(); });
 }
 
-JobQueue::~JobQueue() {
+JobQueue::~JobQueue() { stop(); }
+
+void JobQueue::stop() {
   {
     std::lock_guard lock(impl_->mutex);
     impl_->stopping = true;
     for (auto& [id, job] : impl_->jobs) job.progress->cancel();
     impl_->changed.notify_all();
   }
-  impl_->thread.join();
+  if (impl_->thread.joinable()) impl_->thread.join();
 }
 
 Result<JobId> JobQueue::add(ProjectId project, Work work, std::string user, JobKind kind) {

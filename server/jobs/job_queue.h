@@ -22,7 +22,7 @@ class Jobs;
 namespace strata::jobs {
 
 // The kind of a job's result.
-enum class JobKind { import, layers, image, figure };
+enum class JobKind { import, layers, image, figure, regions, changes };
 enum class JobState { queued, running, done, failed, cancelled };
 
 // The result of a job.
@@ -60,7 +60,10 @@ class JobQueue {
   // but without their files. Unfinished jobs of an earlier queue are reported as failed. `store`
   // must outlive the queue. `node` is this server, if the site has several servers. Blocks.
   explicit JobQueue(store::Jobs* store = nullptr, std::optional<Uuid> node = {});
-  ~JobQueue();  // cancels the running job and joins the thread
+  ~JobQueue();
+  // Cancels the running job, joins the thread and refuses new jobs. Call it before the objects that
+  // jobs use are destroyed. The destructor also calls it. Idempotent.
+  void stop();
   using Work = std::function<Result<JobResult>(Progress&)>;
   // Fails with `busy` if 64 jobs wait, with `unavailable` if the queue is stopping, or with the
   // Error of the store. Blocks while it writes to the store.

@@ -8,6 +8,7 @@
 #include "domain/scene/compass.h"
 #include "domain/scene/up.h"
 #include "mesh/analysis/curvature.h"
+#include "mesh/analysis/model_change.h"
 #include "mesh/analysis/model_distance.h"
 #include "mesh/analysis/openness.h"
 #include "mesh/analysis/sampled_field.h"
@@ -27,6 +28,8 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 // Shares of the progress. Measuring takes most of the time for kinds with rays or neighborhoods.
 constexpr double kMeasured = 0.7;
 constexpr double kPrepared = 0.15;  // for kinds that first make samples or rays
+// Of a change to its level of detection.
+constexpr double kMaxRatio = 10;
 // If the horizontal part of the normal is shorter, the surface has no azimuth.
 constexpr float kFlat = 0.02f;
 
@@ -70,6 +73,9 @@ class Measure {
       case ShapeKind::ambient_occlusion: return openness();
       case ShapeKind::boundary_distance: return to_boundary();
       case ShapeKind::model_distance: return to_model();
+      case ShapeKind::change:
+      case ShapeKind::level_of_detection:
+      case ShapeKind::significant_change: return change();
       case ShapeKind::vertex_property: return property();
     }
     return fail(ErrorCode::internal, "Unknown kind",
@@ -181,7 +187,11 @@ class Measure {
                    [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
   }
 
-  Result<SurfaceValue> to_model() {
+  struct Other {
+    GeometryPtr geometry;
+    double metres;
+  };
+  Result<Other> read_other_model() {
     auto other = store_.models().find(recipe_.model);
     if (!other) return refuse_model(other.error());
     if (other->id == model_.id)
@@ -199,11 +209,49 @@ class Measure {
     auto bytes = store_.models().geometry(other->id);
     if (!bytes) return refuse_model(bytes.error());
     auto there = STRATA_TRY(mesh::decode_geometry(*bytes));
-    const mesh::ModelDistance distance(geometry_->origin, model_.metres(),
-                                       std::make_shared<const mesh::Geometry>(std::move(there)),
-                                       other->metres(), in_units(*recipe_.distance_mm));
+    return Other{std::make_shared<const mesh::Geometry>(std::move(there)), other->metres()};
+  }
+
+  Result<SurfaceValue> to_model() {
+    const auto other = STRATA_TRY(read_other_model());
+    const mesh::ModelDistance distance(geometry_->origin, model_.metres(), other.geometry,
+                                       other.metres, in_units(*recipe_.distance_mm));
     return sampled(even_spacing(1e6),
                    [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
+  }
+
+  Result<SurfaceValue> change() {
+    const auto other = STRATA_TRY(read_other_model());
+    const mesh::ChangeScales scales{
+        in_units(*recipe_.normal_scale_mm), in_units(*recipe_.projection_scale_mm),
+        in_units(*recipe_.distance_mm), in_units(*recipe_.registration_mm)};
+    const auto made = STRATA_TRY(mesh::ModelChange::make(
+        *geometry_, model_.metres(), *other.geometry, other.metres, scales, progress_, kPrepared));
+    progress_.begin_stage(kPrepared, kMeasured);
+    // The values are means over the cylinder, so a quarter of its diameter loses no detail.
+    const float spacing = std::max(static_cast<float>(scales.projection / 4), even_spacing(1e6));
+    const auto measured = [&](auto part) {
+      return sampled(spacing, [&made, part](const glm::vec3& p, const glm::vec3& n) {
+        const auto found = made.at(p, n);
+        return found ? static_cast<float>(part(*found)) : kNone;
+      });
+    };
+    using Change = mesh::ModelChange::Change;
+    const double mm = model_.metres() * 1000;
+    if (recipe_.kind == ShapeKind::change)
+      return measured([=](const Change& c) { return c.distance * mm; });
+    if (recipe_.kind == ShapeKind::level_of_detection)
+      return measured([=](const Change& c) { return c.detection * mm; });
+    // The ratio is interpolated between the samples, and then divided into classes. It is limited,
+    // so that a very large ratio of one sample does not outweigh its neighbors.
+    const auto ratio = STRATA_TRY(measured([](const Change& c) {
+      return std::clamp(c.distance / c.detection, -kMaxRatio, kMaxRatio);
+    }));
+    return SurfaceValue([ratio](std::uint32_t t, const glm::vec3& w) {
+      const double times = ratio(t, w);
+      if (std::isnan(times)) return times;
+      return times > 1 ? 1.0 : times < -1 ? 2.0 : 0.0;
+    });
   }
   static tl::unexpected<Error> refuse_model(Error problem) {
     if (problem.code == ErrorCode::not_found) problem.field = "compute.model";

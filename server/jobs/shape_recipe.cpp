@@ -9,12 +9,27 @@
 namespace strata::jobs {
 namespace {
 
-constexpr std::array<std::string_view, 12> kNames{
-    "height",         "slope",          "azimuth",   "mean_curvature",    "gaussian_curvature",
-    "max_curvature",  "min_curvature",  "roughness", "ambient_occlusion", "boundary_distance",
-    "model_distance", "vertex_property"};
+constexpr std::array<std::string_view, 15> kNames{"height",
+                                                  "slope",
+                                                  "azimuth",
+                                                  "mean_curvature",
+                                                  "gaussian_curvature",
+                                                  "max_curvature",
+                                                  "min_curvature",
+                                                  "roughness",
+                                                  "ambient_occlusion",
+                                                  "boundary_distance",
+                                                  "model_distance",
+                                                  "change",
+                                                  "level_of_detection",
+                                                  "significant_change",
+                                                  "vertex_property"};
 
 constexpr double kEdgesPerRadius = 4;
+// The cylinder then contains about 50 vertices of each mesh. Lague et al. recommend at least 20.
+constexpr double kEdgesPerProjection = 8;
+constexpr double kProjectionsPerNormal = 2;
+constexpr double kUsualProjectionsPerDistance = 50, kMaxProjectionsPerDistance = 200;
 constexpr int kDefaultRays = 64;
 constexpr int kMinRays = 16, kMaxRays = 1024;
 
@@ -22,8 +37,10 @@ bool takes_radius(ShapeKind kind) {
   return kind >= ShapeKind::mean_curvature && kind <= ShapeKind::roughness;
 }
 bool takes_distance(ShapeKind kind) {
-  return kind == ShapeKind::ambient_occlusion || kind == ShapeKind::model_distance;
+  return kind == ShapeKind::ambient_occlusion || kind == ShapeKind::model_distance ||
+         is_change(kind);
 }
+bool takes_model(ShapeKind kind) { return kind == ShapeKind::model_distance || is_change(kind); }
 
 double millimetres(double units, const Model& model) { return units * model.metres() * 1000; }
 double diagonal_mm(const Model& model) {
@@ -60,14 +77,17 @@ Result<void> check_members(const ShapeRecipe& r) {
     const char* member;
   } members[] = {{r.radius_mm.has_value(), takes_radius(kind), "radius_mm"},
                  {r.distance_mm.has_value(), takes_distance(kind), "distance_mm"},
+                 {r.normal_scale_mm.has_value(), is_change(kind), "normal_scale_mm"},
+                 {r.projection_scale_mm.has_value(), is_change(kind), "projection_scale_mm"},
+                 {r.registration_mm.has_value(), is_change(kind), "registration_mm"},
                  {r.rays.has_value(), kind == ShapeKind::ambient_occlusion, "rays"},
                  {r.absolute, kind == ShapeKind::height, "absolute"},
-                 {!r.model.empty(), kind == ShapeKind::model_distance, "model"},
+                 {!r.model.empty(), takes_model(kind), "model"},
                  {!r.property.empty(), kind == ShapeKind::vertex_property, "property"},
                  {!r.source.empty(), kind == ShapeKind::vertex_property, "source"}};
   for (const auto& [is_set, takes, member] : members)
     STRATA_TRY(refuse_foreign(is_set, takes, member, kind));
-  if (kind == ShapeKind::model_distance && r.model.empty())
+  if (takes_model(kind) && r.model.empty())
     return fail(ErrorCode::invalid, "Model missing",
                 "Choose the other model. The server measures the distance to its surface.",
                 "compute.model");
@@ -89,6 +109,33 @@ Result<void> check_length(double value, double least, double most, const char* m
               "For this model, the value must be from " + short_number(rounded(least * 1.05)) +
                   " to " + short_number(rounded(most)) + " mm.",
               "compute." + std::string(member));
+}
+
+// The scales have the same values for both models, so the coarser mesh determines them.
+Result<void> complete_scales(ShapeRecipe& recipe, const Model& model, const Model& other) {
+  const double diagonal = diagonal_mm(model);
+  const double least = 2 * std::max(least_radius_mm(model), least_radius_mm(other));
+  const double most = std::max(diagonal, 2 * least);
+  if (!recipe.projection_scale_mm)
+    recipe.projection_scale_mm = rounded(std::clamp(
+        kEdgesPerProjection * std::max(edge_mm(model), edge_mm(other)), 1.1 * least, most));
+  const double projection = *recipe.projection_scale_mm;
+  STRATA_TRY(check_length(projection, least, most, "projection_scale_mm"));
+  if (!recipe.normal_scale_mm)
+    recipe.normal_scale_mm = rounded(std::min(kProjectionsPerNormal * projection, most));
+  STRATA_TRY(check_length(*recipe.normal_scale_mm, least, most, "normal_scale_mm"));
+  const double farthest = kMaxProjectionsPerDistance * projection;
+  if (!recipe.distance_mm)
+    recipe.distance_mm =
+        rounded(std::clamp(diagonal / 10, projection, kUsualProjectionsPerDistance * projection));
+  STRATA_TRY(check_length(*recipe.distance_mm, projection / 2, farthest, "distance_mm"));
+  if (!recipe.registration_mm) recipe.registration_mm = 0;
+  if (!(*recipe.registration_mm >= 0 && *recipe.registration_mm <= farthest))
+    return fail(
+        ErrorCode::invalid, "Out of range for this model",
+        "For this model, the value must be from 0 to " + short_number(rounded(farthest)) + " mm.",
+        "compute.registration_mm");
+  return {};
 }
 
 Palette linear(double low, double high, std::initializer_list<Rgba> colors) {
@@ -121,6 +168,14 @@ Palette diverging(double limit) {
                  {178, 24, 43, 255}});
 }
 
+Palette significance() {
+  Palette palette{PaletteMode::categorical, 0, 2, {}, {}};
+  palette.points = {{0, {214, 214, 214, 255}, "no significant change"},
+                    {1, {178, 24, 43, 255}, "significant gain"},
+                    {2, {33, 102, 172, 255}, "significant loss"}};
+  return palette;
+}
+
 Palette compass() {
   Palette palette{PaletteMode::linear, 0, 360, {}, {}};
   palette.points = {{0, {44, 90, 160, 255}, "north"},
@@ -129,6 +184,15 @@ Palette compass() {
                     {270, {143, 199, 181, 255}, "west"},
                     {360, {44, 90, 160, 255}, "north"}};
   return palette;
+}
+
+std::string scales_of(const ShapeRecipe& r) {
+  const auto mm = [](const std::optional<double>& value) {
+    return short_number(value.value_or(0)) + " mm";
+  };
+  return " M3C2 with a normal scale of " + mm(r.normal_scale_mm) + ", a projection scale of " +
+         mm(r.projection_scale_mm) + " and a registration error of " + mm(r.registration_mm) +
+         ". Searched up to " + mm(r.distance_mm) + ".";
 }
 
 std::string sentence(const ShapeRecipe& r, const Model& model, const std::string& other) {
@@ -164,6 +228,18 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
       return "Distance to the surface of " + other +
              ": positive where this model is in front of that surface (material was added), negative where it is behind. Searched up to " +
              short_number(r.distance_mm.value_or(0)) + " mm.";
+    case ShapeKind::change:
+      return "Change of the surface since " + other +
+             ": positive where material was added, negative where it was removed. Averaged over a cylinder along the mean normal." +
+             scales_of(r);
+    case ShapeKind::level_of_detection:
+      return "Smallest change since " + other +
+             " that can be distinguished from noise and alignment, with a confidence of 95 %." +
+             scales_of(r);
+    case ShapeKind::significant_change:
+      return "Where the change since " + other +
+             " is larger than noise and alignment can explain, with a confidence of 95 %: 0 no, 1 material was added, 2 material was removed." +
+             scales_of(r);
     case ShapeKind::vertex_property:
       return "Property " + r.property + " of the scan's vertices, from " + r.source + ".";
   }
@@ -180,8 +256,16 @@ std::optional<ShapeKind> parse_shape_kind(std::string_view name) {
   return std::nullopt;
 }
 
-Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model) {
+bool is_change(ShapeKind kind) {
+  return kind >= ShapeKind::change && kind <= ShapeKind::significant_change;
+}
+
+Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model, const Model* other) {
   STRATA_TRY(check_members(recipe));
+  if (is_change(recipe.kind)) {
+    STRATA_TRY(complete_scales(recipe, model, other ? *other : model));
+    return recipe;
+  }
   const double diagonal = diagonal_mm(model), least = least_radius_mm(model);
   if (takes_radius(recipe.kind)) {
     if (!recipe.radius_mm)
@@ -213,6 +297,9 @@ nlohmann::json to_json(const ShapeRecipe& r) {
   nlohmann::json json{{"kind", name(r.kind)}};
   if (r.radius_mm) json["radius_mm"] = *r.radius_mm;
   if (r.distance_mm) json["distance_mm"] = *r.distance_mm;
+  if (r.normal_scale_mm) json["normal_scale_mm"] = *r.normal_scale_mm;
+  if (r.projection_scale_mm) json["projection_scale_mm"] = *r.projection_scale_mm;
+  if (r.registration_mm) json["registration_mm"] = *r.registration_mm;
   if (r.rays) json["rays"] = *r.rays;
   if (r.absolute) json["absolute"] = true;
   if (!r.model.empty()) json["model"] = r.model;
@@ -222,7 +309,7 @@ nlohmann::json to_json(const ShapeRecipe& r) {
 }
 
 std::string unit_of(const ShapeRecipe& recipe, const Model& model) {
-  const std::string unit(name(model.unit));
+  std::string unit(name(model.unit));
   switch (recipe.kind) {
     case ShapeKind::slope:
     case ShapeKind::azimuth: return "°";
@@ -230,6 +317,9 @@ std::string unit_of(const ShapeRecipe& recipe, const Model& model) {
     case ShapeKind::max_curvature:
     case ShapeKind::min_curvature: return "1/" + unit;
     case ShapeKind::gaussian_curvature: return "1/" + unit + "²";
+    case ShapeKind::change:
+    case ShapeKind::level_of_detection: return "mm";
+    case ShapeKind::significant_change:
     case ShapeKind::ambient_occlusion:
     case ShapeKind::vertex_property: return "";
     default: return unit;
@@ -250,11 +340,14 @@ Palette palette_of(ShapeKind kind, const ValueRange& range) {
     case ShapeKind::gaussian_curvature:
     case ShapeKind::max_curvature:
     case ShapeKind::min_curvature:
-    case ShapeKind::model_distance: {
+    case ShapeKind::model_distance:
+    case ShapeKind::change: {
       const double limit = rounded(std::max(std::abs(range.low), std::abs(range.high)));
       return diverging(limit > 0 ? limit : 1);
     }
-    case ShapeKind::roughness: return viridis(0, rounded(range.high));
+    case ShapeKind::roughness:
+    case ShapeKind::level_of_detection: return viridis(0, rounded(range.high));
+    case ShapeKind::significant_change: return significance();
     case ShapeKind::ambient_occlusion:
       return linear(0, 1, {{16, 18, 27, 255}, {120, 122, 130, 255}, {255, 255, 255, 255}});
     case ShapeKind::vertex_property: return viridis(range.low, range.high);

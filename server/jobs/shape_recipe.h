@@ -23,29 +23,37 @@ enum class ShapeKind {
   ambient_occlusion,
   boundary_distance,
   model_distance,
+  change,              // M3C2 distance to another model, in mm
+  level_of_detection,  // of the change, in mm
+  significant_change,  // 0: within the level of detection, 1: gain, 2: loss
   vertex_property
 };
 std::string_view name(ShapeKind kind);
 std::optional<ShapeKind> parse_shape_kind(std::string_view name);
+// Returns whether the values come from the comparison with another model with M3C2.
+bool is_change(ShapeKind kind);
 
 // The parameters of a layer that is computed from a model's shape. `completed` replaces empty
 // fields by defaults for the model.
 struct ShapeRecipe {
   ShapeKind kind = ShapeKind::height;
-  std::optional<double> radius_mm;    // curvatures, roughness: radius of the neighborhood
-  std::optional<double> distance_mm;  // ambient occlusion, model distance: largest distance
-  std::optional<int> rays;            // ambient occlusion: number of rays
+  std::optional<double> radius_mm;  // curvatures, roughness: radius of the neighborhood
+  // ambient occlusion, model distance, changes: largest distance
+  std::optional<double> distance_mm;
+  // changes: the scales of M3C2 (mesh/analysis/model_change.h)
+  std::optional<double> normal_scale_mm, projection_scale_mm, registration_mm;
+  std::optional<int> rays;  // ambient occlusion: number of rays
   // Height: the world coordinate instead of the height above the lowest point.
   bool absolute = false;
-  std::string model;  // model distance: id or slug of the other model
+  std::string model;  // model distance, changes: id or slug of the other model
   // Vertex property: its name and the source file. Empty: the only source file with this property.
   std::string property, source;
 };
 
-// Returns the recipe with defaults for empty fields. Returns the Error `invalid` if a field is
-// missing, does not belong to the kind, or is out of range for the model. The Error names the
-// field (`compute.radius_mm`).
-Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model);
+// Returns the recipe with defaults for empty fields. `other` is the other model, for kinds that
+// compare two models. Returns the Error `invalid` if a field is missing, does not belong to the
+// kind, or is out of range for the models. The Error names the field (`compute.radius_mm`).
+Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model, const Model* other = nullptr);
 // Returns the recipe in the format of the body of POST …/layers and of the journal.
 nlohmann::json to_json(const ShapeRecipe& recipe);
 

@@ -7,59 +7,13 @@
 #include <utility>
 
 #include "domain/layers/texel_lookup.h"
-#include "mesh/surface/search_tree.h"
-#include "mesh/surface/surface_normals.h"
+#include "jobs/counterparts.h"
 #include "mesh/texels/surface_map.h"
-#include "mesh/texels/texel_owners.h"
 #include "store/content/models.h"
 #include "store/journal/journal_reads.h"
 
 namespace strata::jobs {
 namespace {
-
-using GeometryPtr = std::shared_ptr<const mesh::Geometry>;
-constexpr float kNoUv = -1;
-
-// One model of a transfer, with the data to find the counterparts of texels.
-struct Side {
-  GeometryPtr geometry;
-  std::shared_ptr<const mesh::SearchTree> tree;
-  mesh::SurfaceNormals normals;
-  double metres;
-
-  Side(GeometryPtr the_geometry, std::shared_ptr<const mesh::SearchTree> the_tree,
-       double the_metres)
-      : geometry(std::move(the_geometry)),
-        tree(std::move(the_tree)),
-        normals(geometry),
-        metres(the_metres) {}
-
-  struct Spot {
-    glm::dvec3 world;
-    glm::vec3 normal;
-  };
-  Spot spot(const mesh::TexelOwners& owners, std::size_t texel) const {
-    const std::uint32_t triangle = owners.triangle[texel];
-    const glm::vec3 w = owners.weights_of(texel);
-    glm::vec3 position(0);
-    for (int k = 0; k < 3; ++k)
-      position +=
-          w[k] * geometry->vertices[geometry->indices[3 * std::size_t{triangle} + k]].position;
-    return {geometry->origin + glm::dvec3(position), normals.at(triangle, w)};
-  }
-};
-
-struct Tolerance {
-  double metres;
-  float least_cos;
-};
-
-std::optional<mesh::SearchTree::Hit> counterpart(const Side& from, const Side::Spot& spot,
-                                                 const Side& to, const Tolerance& tolerance) {
-  const glm::vec3 point(spot.world * (from.metres / to.metres) - to.geometry->origin);
-  return to.tree->nearest_facing(point, static_cast<float>(tolerance.metres / to.metres),
-                                 spot.normal, tolerance.least_cos);
-}
 
 // Adds the areas of texels in parts. One thread adds each part, so no lock is needed, and the sum
 // is the same for any number of threads.
@@ -76,8 +30,8 @@ class AreaSum {
 // The layers with the same resolution.
 class Group {
  public:
-  Group(const TransferTarget& target, const Side& here, const Side& there,
-        const Tolerance& tolerance, int source_resolution, Progress& progress)
+  Group(const TransferTarget& target, const ComparedSide& here, const ComparedSide& there,
+        const CounterpartTolerance& tolerance, int source_resolution, Progress& progress)
       : target_(target),
         here_(here),
         there_(there),
@@ -91,23 +45,17 @@ class Group {
 
   // Finds the point on the source from which each texel of the target takes its values.
   Result<void> match(double from, double to) {
-    progress_.begin_stage(from, from + 0.2 * (to - from));
+    progress_.begin_stage(from, from);
     auto map = STRATA_TRY(target_.surface_map(resolution_));
     map_ = std::move(map);
-    auto owners = STRATA_TRY(mesh::bake_texel_owners(*here_.geometry, resolution_, progress_));
-    owners_ = std::move(owners);
-    source_uv_.assign(owners_.triangle.size(), glm::vec2(kNoUv));
-    AreaSum matched(owners_.triangle.size());
-    progress_.begin_stage(from + 0.2 * (to - from), to);
-    const auto find = [&](std::size_t texel) {
-      const auto hit = counterpart(here_, here_.spot(owners_, texel), there_, tolerance_);
-      if (!hit) return;
-      source_uv_[texel] = hit->uv;
-      matched.add(texel, map_->area[texel]);
-    };
-    auto done = mesh::for_each_texel(owners_, find, "Finding the corresponding places", progress_);
-    matched_m2_ = matched.total() * here_.metres * here_.metres;
-    return done;
+    auto found =
+        STRATA_TRY(find_counterparts(here_, there_, tolerance_, resolution_, progress_, from, to));
+    found_ = std::move(found);
+    double matched = 0;
+    for (std::size_t texel = 0; texel < found_.uv.size(); ++texel)
+      if (found_.has(texel)) matched += map_->area[texel];
+    matched_m2_ = matched * here_.metres * here_.metres;
+    return {};
   }
 
   // The painted area of a layer on the source, and the part of it without a counterpart on the
@@ -126,7 +74,7 @@ class Group {
       std::optional<bool> is_lost;
       for (std::size_t i = 0; i < layers.size(); ++i) {
         if (!is_valid(layers[i], owners, texel)) continue;
-        if (!is_lost) is_lost = !counterpart(there_, there_.spot(owners, texel), here_, tolerance_);
+        if (!is_lost) is_lost = !counterpart(there_, owners, texel, here_, tolerance_);
         painted[i].add(texel, map.area[texel]);
         if (*is_lost) lost[i].add(texel, map.area[texel]);
       }
@@ -142,14 +90,14 @@ class Group {
   }
 
   Result<TransferredLayer> paint(const Layer& layer, const TileMap& tiles, const Balance& balance) {
-    AreaSum area(owners_.triangle.size());
+    AreaSum area(found_.uv.size());
     const auto bits = [&](std::size_t texel) -> std::optional<std::uint32_t> {
-      if (source_uv_[texel].x == kNoUv) return std::nullopt;
-      const auto found = bits_at(tiles, layer.resolution, source_uv_[texel]);
+      if (!found_.has(texel)) return std::nullopt;
+      const auto found = bits_at(tiles, layer.resolution, found_.uv[texel]);
       if (found) area.add(texel, map_->area[texel]);
       return found;
     };
-    auto painted = STRATA_TRY(mesh::paint_texels(owners_, layer.type, bits, progress_));
+    auto painted = STRATA_TRY(mesh::paint_texels(found_.owners, layer.type, bits, progress_));
     return TransferredLayer{&layer,
                             resolution_,
                             std::move(painted),
@@ -172,13 +120,12 @@ class Group {
   }
 
   const TransferTarget& target_;
-  const Side &here_, &there_;
-  const Tolerance tolerance_;
+  const ComparedSide &here_, &there_;
+  const CounterpartTolerance tolerance_;
   const int source_resolution_, resolution_;
   Progress& progress_;
   std::shared_ptr<const mesh::SurfaceMap> map_;
-  mesh::TexelOwners owners_;
-  std::vector<glm::vec2> source_uv_;  // for each texel of the target; x = kNoUv: no counterpart
+  Counterparts found_;  // on the source, for each texel of the target
   double matched_m2_ = 0;
 };
 
@@ -192,11 +139,12 @@ Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarge
   auto decoded = STRATA_TRY(mesh::decode_geometry(bytes));
   bytes.clear();
   const auto source = std::make_shared<const mesh::Geometry>(std::move(decoded));
-  const Side there(source, std::make_shared<const mesh::SearchTree>(source),
-                   request.source.metres());
-  const Side here(target.geometry, target.tree, target.model.metres());
-  const Tolerance tolerance{request.tolerance_mm / 1000,
-                            static_cast<float>(std::cos(glm::radians(request.max_angle_degrees)))};
+  const ComparedSide there(source, std::make_shared<const mesh::SearchTree>(source),
+                           request.source.metres());
+  const ComparedSide here(target.geometry, target.tree, target.model.metres());
+  const CounterpartTolerance tolerance{
+      request.tolerance_mm / 1000,
+      static_cast<float>(std::cos(glm::radians(request.max_angle_degrees)))};
 
   std::map<int, std::vector<const Layer*>> by_resolution;
   for (const Layer& layer : request.layers) by_resolution[layer.resolution].push_back(&layer);

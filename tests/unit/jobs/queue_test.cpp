@@ -169,6 +169,29 @@ TEST(JobsQueue, ending_the_queue_cancels_what_runs) {
   EXPECT_TRUE(stopped);
 }
 
+TEST(JobsQueue, a_stopped_queue_runs_nothing_and_keeps_its_list) {
+  JobQueue queue;
+  std::promise<void> entered;
+  const auto running = queue.add(1, [&](Progress& progress) -> Result<JobResult> {
+    entered.set_value();
+    while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return cancelled_problem();
+  });
+  bool ran = false;
+  queue.add(1, [&](Progress&) -> Result<JobResult> {
+    ran = true;
+    return ModelId(1);
+  });
+  entered.get_future().wait();
+  queue.stop();
+  queue.stop();
+  EXPECT_FALSE(ran);
+  EXPECT_EQ(queue.status(*running)->state, JobState::cancelled);
+  const auto late = queue.add(1, [](Progress&) -> Result<JobResult> { return ModelId(1); });
+  ASSERT_FALSE(late);
+  EXPECT_EQ(late.error().code, ErrorCode::unavailable);
+}
+
 TEST(JobsQueue, the_newest_thousand_are_remembered) {
   JobQueue queue;
   JobId last;
