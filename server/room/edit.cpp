@@ -6,22 +6,24 @@
 namespace strata::room {
 namespace {
 
-// Returns the distinct values of the valid texels.
-std::set<std::int64_t> keys_in(const TileMap& tiles) {
-  std::set<std::int64_t> keys;
-  for (const auto& [address, tile] : tiles) {
-    std::optional<std::uint32_t> last;  // neighbors mostly have the same key
-    for (std::size_t word = 0; word < tile->valid.words.size(); ++word)
-      for (auto rest = tile->valid.words[word]; rest != 0; rest &= rest - 1) {
-        const std::uint32_t bits = tile->bits(static_cast<int>(word * 64) + std::countr_zero(rest));
-        if (last != bits) keys.insert(bits);
-        last = bits;
-      }
-  }
-  return keys;
+// Adds the distinct values of those of these texels that are valid.
+void add_keys(const TileData& tile, const TileMask& texels, std::set<std::int64_t>& keys) {
+  std::optional<std::uint32_t> last;  // neighbors mostly have the same key
+  for (std::size_t word = 0; word < texels.words.size(); ++word)
+    for (auto rest = texels.words[word] & tile.valid.words[word]; rest != 0; rest &= rest - 1) {
+      const std::uint32_t bits = tile.bits(static_cast<int>(word * 64) + std::countr_zero(rest));
+      if (last != bits) keys.insert(bits);
+      last = bits;
+    }
 }
 
 }  // namespace
+
+std::vector<std::int64_t> keys_in(const query::TexelPatch& patch) {
+  std::set<std::int64_t> keys;
+  for (const auto& [address, tile] : patch.tiles) add_keys(*tile.after, tile.texels, keys);
+  return {keys.begin(), keys.end()};
+}
 
 std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit) {
   if (layer.kind != LayerKind::database) return {};
@@ -35,18 +37,11 @@ std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit
   if (const auto* polygon = std::get_if<PolygonEdit>(&edit.edit))
     return one(polygon->erase, polygon->value_bits);
   if (const auto* import = std::get_if<ImportEdit>(&edit.edit)) {
-    const auto keys = keys_in(import->tiles);
-    return {keys.begin(), keys.end()};
-  }
-  if (const auto* patch = std::get_if<PatchEdit>(&edit.edit)) {
-    // A record may have been deleted since the patch was computed, also one that was painted then.
     std::set<std::int64_t> keys;
-    for (const auto& [address, tile] : patch->patch.tiles)
-      for (int texel = 0; texel < kTexelsPerTile; ++texel)
-        if (tile.texels.test(texel) && tile.after->valid.test(texel))
-          keys.insert(tile.after->bits(texel));
+    for (const auto& [address, tile] : import->tiles) add_keys(*tile, tile->valid, keys);
     return {keys.begin(), keys.end()};
   }
+  if (const auto* patch = std::get_if<PatchEdit>(&edit.edit)) return patch->keys;
   return {};
 }
 

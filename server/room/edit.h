@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@
 #include "domain/people/role.h"
 #include "domain/scene/stroke.h"
 #include "expression/expression.h"
+#include "query/conditions/texel_selection.h"
 #include "query/regions/surface_values.h"
 #include "query/sampling/values.h"
 #include "room/edit_answer.h"
@@ -47,7 +49,13 @@ struct FillEdit {
     // same value, or where all have no value.
     Place at;
   };
-  std::variant<Everywhere, Where, Island, Connected> region = Everywhere{};
+  struct Selected {
+    // Surface texels that were selected before the edit. If the layer has another resolution by
+    // now, the edit is refused with a `conflict` error.
+    std::shared_ptr<const query::TexelSelection> texels;
+    int resolution = 0;
+  };
+  std::variant<Everywhere, Where, Island, Connected, Selected> region = Everywhere{};
 };
 struct PolygonEdit {
   bool erase = false;
@@ -64,7 +72,8 @@ struct ImportEdit {
 struct ComputeEdit {
   // The content of a computed layer, from the layers and records as they are when the edit starts.
   Expression expression;
-  // The shape values that the expression reads (kShapeNames), as layers `surface.…`.
+  // The shape values (kShapeNames) and functions along the surface that the expression reads, as
+  // layers `surface.…`.
   std::vector<query::LayerView> shapes;
   bool overwrites = false;  // also replaces later edits by hand
 };
@@ -75,9 +84,13 @@ struct PatchEdit {
   query::TexelPatch patch;
   ValueType type = ValueType::u8;  // of the layer at that time
   int resolution = 0;
-  // The keys of a layer of records that the patch adds. Other keys were on the layer before.
+  // For a layer of records: keys_in(patch). A record may have been deleted since the patch was
+  // computed, even if its key was on the layer then.
   std::vector<std::int64_t> keys{};
 };
+// Returns the distinct values that the patch writes. Reads all its texels, so call it before the
+// edit is submitted.
+std::vector<std::int64_t> keys_in(const query::TexelPatch& patch);
 struct UndoEdit {};  // undoes the author's newest stroke in force on the layer
 struct RedoEdit {};
 struct ReviewEdit {  // reviews edits that wait for review, or that were reviewed before

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "domain/layers/tile_mirror.h"
+#include "query/conditions/texel_selection.h"
 #include "query/sampling/values.h"
 #include "query/statistics/perimeter.h"
 #include "query/statistics/quantities.h"
@@ -43,7 +44,9 @@ struct SeenGrid {
 };
 struct StatisticsOptions {  // options that take more time
   bool quantiles = false, pieces = false, perimeter = false;
-  std::optional<SeenGrid> seen{};  // for `select`
+  // for `select`:
+  std::optional<SeenGrid> seen{};
+  std::optional<std::string> painted{};  // slug of the layer on which the selection is painted
 };
 struct SelectedArea {
   int resolution = 0;  // resolution of the counted texels
@@ -53,6 +56,13 @@ struct SelectedArea {
   std::map<std::string, query::Statistics> layers;  // by slug: the values of each layer in the area
   // For StatisticsOptions::seen, row by row from the top left. 1 where the camera sees the area.
   std::vector<std::uint8_t> seen{};
+  // For StatisticsOptions::painted: the selection at the resolution of that layer. Not set if the
+  // whole surface is selected.
+  struct Texels {
+    int resolution = 0;
+    query::TexelSelection texels;
+  };
+  std::optional<Texels> painted{};
 };
 
 struct LayerDifference {  // between two states of a layer
@@ -87,8 +97,8 @@ class Queries {
   virtual Result<query::Statistics> statistics(const std::string& layer,
                                                const Selection& selection = {},
                                                StatisticsOptions options = {}) = 0;
-  // Counts the texels of the finest layer in `layers` or in the condition. Without a layer, uses
-  // the default resolution of the model.
+  // Counts the texels of the finest layer in `layers`, in the condition, or on which the selection
+  // is painted. Without a layer, uses the default resolution of the model.
   virtual Result<SelectedArea> select(const Selection& selection,
                                       const std::vector<std::string>& layers,
                                       StatisticsOptions options = {}) = 0;

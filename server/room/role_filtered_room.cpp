@@ -104,13 +104,16 @@ class FilteredQueries final : public Queries {
   Result<query::Statistics> statistics(const std::string& layer, const Selection& selection,
                                        StatisticsOptions options) override {
     STRATA_TRY(layers_.check({layer}));
-    return queries_.statistics(layer, seen_by(selection), options);
+    const Selection seen = STRATA_TRY(seen_by(selection));
+    return queries_.statistics(layer, seen, options);
   }
   Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
                               StatisticsOptions options) override {
     STRATA_TRY(layers_.check(layers));
     if (selection.changed) STRATA_TRY(layers_.check(selection.changed->layers));
-    return queries_.select(seen_by(selection), layers, options);
+    if (options.painted) STRATA_TRY(layers_.check({*options.painted}));
+    const Selection seen = STRATA_TRY(seen_by(selection));
+    return queries_.select(seen, layers, options);
   }
   Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,
                                  At at) override {
@@ -120,7 +123,8 @@ class FilteredQueries final : public Queries {
   Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
                                         const Selection& selection) override {
     STRATA_TRY(layers_.check({rows, columns}));
-    return queries_.cross_table(rows, columns, seen_by(selection));
+    const Selection seen = STRATA_TRY(seen_by(selection));
+    return queries_.cross_table(rows, columns, seen);
   }
   Result<query::Quantities> quantities(const std::string& layer, At at) override {
     STRATA_TRY(layers_.check({layer}));
@@ -133,7 +137,8 @@ class FilteredQueries final : public Queries {
   Result<query::SurfaceTexels> surface_texels(const std::string& layer,
                                               const Selection& selection) override {
     STRATA_TRY(layers_.check({layer}));
-    return queries_.surface_texels(layer, seen_by(selection));
+    const Selection seen = STRATA_TRY(seen_by(selection));
+    return queries_.surface_texels(layer, seen);
   }
   Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) override {
     STRATA_TRY(layers_.check({layer}));
@@ -150,7 +155,9 @@ class FilteredQueries final : public Queries {
   }
 
  private:
-  Selection seen_by(Selection selection) const {
+  Result<Selection> seen_by(Selection selection) const {
+    for (const LayerRead& layer : layers_compared(selection))
+      STRATA_TRY(layers_.check({layer.slug}));
     selection.seen_by = std::min(selection.seen_by, role_);
     return selection;
   }

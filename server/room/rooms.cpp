@@ -15,6 +15,7 @@
 #include "core/give_back_memory.h"
 #include "core/log.h"
 #include "core/text/slug.h"
+#include "room/edits.h"
 #include "room/journal_tail.h"
 #include "room/layers.h"
 #include "room/open/following.h"
@@ -68,6 +69,16 @@ const Error kNotFollowed{ErrorCode::unavailable,
                          "This node cannot show the newest state of the model. Try again in a "
                          "minute, or at the node that has the model.",
                          {}};
+
+// The error `gone` means that the model was deleted, and `moved` that another server has it. In
+// both cases, no edit waits for an answer.
+Result<void> settle_if_open(OpenRoom& room) {
+  auto settled = room.settle();
+  if (!settled && settled.error().code != ErrorCode::gone &&
+      settled.error().code != ErrorCode::moved)
+    return settled;
+  return {};
+}
 
 }  // namespace
 
@@ -390,6 +401,18 @@ bool Rooms::is_followed(const std::string& model_ref) const {
   return room && room->is_current();
 }
 
+Result<std::shared_ptr<Room>> Rooms::open_to_read(const std::string& model_ref, Role seen_by) {
+  if (!may_follow()) return open(model_ref, seen_by);
+  const auto owner = STRATA_TRY(elsewhere(model_ref));
+  return owner ? follow(model_ref, seen_by) : open(model_ref, seen_by);
+}
+
+std::optional<std::int64_t> Rooms::shown_sequence(const std::string& model_ref) const {
+  auto room = impl_->find(model_ref);
+  if (!room) room = impl_->find(model_ref, impl_->followers);
+  return room ? std::optional(room->edits().sequence()) : std::nullopt;
+}
+
 Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref, Use use) {
   if (is_suspended()) return tl::unexpected(kNoLease);
   // Finds an open room without the database, so viewing continues while the database is
@@ -453,25 +476,20 @@ void Rooms::records_changed(TableId table_id) {
   for (const auto& room : impl_->all_open()) room->layers().records_changed(table_id);
 }
 
-Result<void> Rooms::retire_key(TableId table_id, std::int64_t key) {
-  impl_->retired_keys.retire(table_id, key);
+Result<void> Rooms::retire_keys(TableId table_id, std::span<const std::int64_t> keys) {
+  impl_->retired_keys.retire(table_id, keys);
   for (const auto& room : impl_->open_ones()) {
     const auto layers = room->layers().all();
     if (std::ranges::none_of(layers, [&](const Layer& layer) { return layer.table == table_id; }))
       continue;
-    if (auto settled = room->settle(); !settled && settled.error().code != ErrorCode::moved)
-      return settled;
+    if (auto settled = settle_if_open(*room); !settled) return settled;
   }
   return {};
 }
 
 Result<void> Rooms::settle() {
-  // The error `gone` means that the model was deleted, and `moved` that another server has it. In
-  // both cases, no edit waits for an answer.
   for (const auto& room : impl_->open_ones())
-    if (auto settled = room->settle(); !settled && settled.error().code != ErrorCode::gone &&
-                                       settled.error().code != ErrorCode::moved)
-      return settled;
+    if (auto settled = settle_if_open(*room); !settled) return settled;
   return {};
 }
 

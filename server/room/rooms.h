@@ -76,12 +76,18 @@ class Rooms {
   // Returns whether such a room of the model is open, and has been up to date since the node last
   // lost its lease. Does not ask the database.
   bool is_followed(const std::string& model_ref) const;
+  // Like `open`, but follows the model if another node has it and this server may do so. For reads
+  // of several models, which may belong to different nodes.
+  Result<std::shared_ptr<Room>> open_to_read(const std::string& model_ref, Role seen_by);
+  // Returns the sequence that the open room of the model shows, also if it follows another node.
+  // Returns nothing if the model is not open. Does not ask the database.
+  std::optional<std::int64_t> shown_sequence(const std::string& model_ref) const;
   // Calls Layers::records_changed in the open models.
   void records_changed(TableId table_id);
-  // Refuses later edits with `conflict` if they would paint this key of the table. Edits that were
-  // accepted earlier are durable when the call returns. After an Error, the key is retired, but
-  // edits may not be durable. Blocks.
-  Result<void> retire_key(TableId table_id, std::int64_t key);
+  // Refuses later edits with `conflict` if they would paint one of these keys of the table. Edits
+  // that were accepted earlier are durable or undone when the call returns. After an Error, the
+  // keys are retired, but edits may not be durable. Blocks.
+  Result<void> retire_keys(TableId table_id, std::span<const std::int64_t> keys);
   // Returns when every accepted edit is durable. After an Error, some edits may not be durable;
   // repeat the call. Blocks.
   Result<void> settle();

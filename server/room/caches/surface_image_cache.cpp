@@ -188,6 +188,17 @@ Result<int> SurfaceImageCache::reserve_pixels(SurfaceImageId id, const PictureIn
   }
 }
 
+Result<HeldPicture> SurfaceImageCache::picture(SurfaceImageId id, int side) {
+  const auto bytes = STRATA_TRY(encoded_bytes(id));
+  const auto info = STRATA_TRY(inspect_picture(*bytes));
+  auto memory =
+      STRATA_TRY(memory_.reserve(std::uint64_t{8} * static_cast<std::uint64_t>(info.width) *
+                                     static_cast<std::uint64_t>(info.height),
+                                 "a model's picture"));
+  auto picture = STRATA_TRY(decode_coarse(*bytes, side));
+  return HeldPicture{std::move(picture), std::move(memory)};
+}
+
 Result<std::shared_ptr<const render::MipmappedPicture>> SurfaceImageCache::read(SurfaceImageId id,
                                                                                 int largest_side) {
   const auto bytes = STRATA_TRY(encoded_bytes(id));

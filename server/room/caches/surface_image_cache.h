@@ -14,6 +14,7 @@
 #include "domain/scene/surface_image.h"
 #include "media/picture.h"
 #include "render/renderer.h"
+#include "room/caches/held_picture.h"
 #include "room/view_settings.h"
 #include "store/store.h"
 
@@ -40,6 +41,9 @@ class SurfaceImageCache : public std::enable_shared_from_this<SurfaceImageCache>
   void drop(SurfaceImageId id);
   std::vector<SurfaceImage> all() const;                           // by order
   std::optional<SurfaceImage> find(const std::string& ref) const;  // id or slug
+  // Returns the pixels of an image. A JPEG may be reduced to a longer side of at least `side`.
+  // Blocks.
+  Result<HeldPicture> picture(SurfaceImageId id, int side);
   // Drops the textures, which were deleted with the old handle. They are made again on request.
   void set_model(render::ModelHandle model);
   void stop();  // stops loading, and no longer calls `ready`

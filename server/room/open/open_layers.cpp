@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/log.h"
+#include "expression/surface_functions.h"
 #include "room/open/open_participants.h"
 #include "room/pipeline/edit_pipeline.h"
 #include "room/pipeline/expression_binding.h"
@@ -171,9 +172,17 @@ Result<void> OpenRoom::LayersPart::check_expression(const Expression& expression
     views.emplace_back();
     views.back().layer.slug = std::string(kShapePrefix) + shape;
   }
-  const auto bound =
-      bind_for_layer(expression, views, room_.services_.store, Role::owner, layer, field);
-  return bound ? Result<void>{} : tl::unexpected(bound.error());
+  const auto check = [&](const Expression& e) -> Result<void> {
+    STRATA_TRY(bind_for_layer(e, views, room_.services_.store, Role::owner, layer, field));
+    return {};
+  };
+  const auto formula = STRATA_TRY(query::separate_surface_functions(expression, field));
+  for (const auto& [slug, function] : formula.functions) {
+    STRATA_TRY(check(function.parts.front()));
+    views.emplace_back();
+    views.back().layer.slug = slug;
+  }
+  return check(formula.expression);
 }
 
 Result<Layer> OpenRoom::LayersPart::widen(const Layer& layer, ValueType type,

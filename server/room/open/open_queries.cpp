@@ -6,10 +6,7 @@
 
 #include "domain/people/question.h"
 #include "mesh/parallel.h"
-#include "mesh/texels/slot_bits.h"
 #include "query/conditions/changed_texels.h"
-#include "query/conditions/expression_evaluator.h"
-#include "query/conditions/flood.h"
 #include "query/conditions/texel_values.h"
 #include "query/sampling/nearest_points.h"
 #include "query/sampling/profile.h"
@@ -17,29 +14,12 @@
 #include "query/statistics/cross_table.h"
 #include "query/statistics/key_areas.h"
 #include "room/open/open_queries.h"
-#include "room/pipeline/expression_binding.h"
 #include "room/pipeline/region.h"
 #include "room/pipeline/tile_changes.h"
 #include "store/journal/journal_reads.h"
 
 namespace strata::room {
 namespace {
-
-// Returns the surface texels of a mask, as one word for each slot.
-query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMap& map) {
-  query::TexelSelection selection(map.block_of_slot.size(), 0);
-  for (const auto& [address, mask] : masks)
-    for (std::uint32_t by = 0; by < query::kBlocksPerTile; ++by)
-      for (std::uint32_t bx = 0; bx < query::kBlocksPerTile; ++bx) {
-        const auto slot =
-            mesh::slot_at(map, static_cast<int>(address.x * query::kBlocksPerTile + bx),
-                          static_cast<int>(address.y * query::kBlocksPerTile + by));
-        if (slot != mesh::kNoSlot)
-          selection[slot] = query::block_bits(mask, static_cast<int>(bx), static_cast<int>(by)) &
-                            map.surface_mask[slot];
-      }
-  return selection;
-}
 
 // Returns whether nothing is painted on the layer. If so, the answer does not need the surface.
 bool is_empty(const query::LayerView& view) {
@@ -116,21 +96,6 @@ Result<query::SurfacePoint> OpenRoom::QueriesPart::pick(const Camera& camera, do
   return query::pick(*room_.surface_lookup_->tree(), room_.geometry_->origin, camera, x, y, views);
 }
 
-Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::texels_within(
-    const Selection& selection, const mesh::SurfaceMap& map) {
-  if (!selection.within) return std::nullopt;
-  if (const auto* outline = std::get_if<Outline>(&*selection.within)) {
-    const auto masks = STRATA_TRY(texels_in(*outline, map, *room_.surface_lookup_,
-                                            room_.services_.renderer, room_.model_handle()));
-    return as_selection(masks, map);
-  }
-  const auto& around = std::get<Selection::Around>(*selection.within);
-  const auto start = STRATA_TRY(find_place(around.at, map, *room_.surface_lookup_, "within.at"));
-  const auto graph = STRATA_TRY(room_.surface_lookup_->graph(map));
-  return query::select_near(map, *graph, start.texel, start.position,
-                            static_cast<float>(around.radius));
-}
-
 // The journal reads only the tiles that differ from a state near the requested one. Even for an old
 // state, there are few such tiles.
 Result<OpenRoom::QueriesPart::ChangedLayer> OpenRoom::QueriesPart::changed_layer(
@@ -190,38 +155,18 @@ Result<std::vector<std::optional<query::TexelSelection>>> OpenRoom::QueriesPart:
   return selected;
 }
 
-// Evaluates the condition only within the area and the changed texels, so a small area needs little
-// time.
 Result<std::optional<query::TexelSelection>> OpenRoom::QueriesPart::select_texels(
     const Selection& selection, const mesh::SurfaceMap& map, const query::TexelSelection* changed) {
   auto inside = texels_within(selection, map);
   if (!inside) return inside;
-  if (changed && *inside) {
-    for (std::size_t slot = 0; slot < changed->size(); ++slot) (**inside)[slot] &= (*changed)[slot];
-  } else if (changed) {
+  if (changed && *inside)
+    combine(**inside, *changed, Combination::intersect);
+  else if (changed)
     *inside = *changed;
-  }
   if (!selection.where) return inside;
-  std::vector<std::string> slugs;
-  std::vector<query::LayerView> candidates;
-  for (const auto& layer : room_.layer_list())
-    if (sees(selection.seen_by, layer.visibility)) {
-      slugs.push_back(layer.slug);
-      candidates.push_back({layer, {}});
-    }
-  const std::vector<std::string> named = layers_of(*selection.where);
-  // The evaluator rejects layers that do not exist, and names the field.
-  std::erase_if(slugs,
-                [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
-  const auto views = STRATA_TRY(room_.layer_views(slugs, selection.at));
-  const auto bound =
-      STRATA_TRY(bind_expression(*selection.where, views, room_.services_.store, selection.seen_by,
-                                 selection.at, "where", &candidates));
-  auto holds = query::select_where(bound, views, map, "where", mesh::background_threads(),
-                                   {room_.geometry_->origin, room_.model().metres()},
-                                   *inside ? &**inside : nullptr);
-  if (!holds) return tl::unexpected(holds.error());
-  return std::move(*holds);
+  auto holds = STRATA_TRY(
+      texels_where(*selection.where, selection, map, "where", *inside ? &**inside : nullptr));
+  return holds;
 }
 
 Result<query::Statistics> OpenRoom::QueriesPart::count(const query::LayerView& view,
@@ -264,14 +209,14 @@ Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
   const auto views = STRATA_TRY(room_.layer_views(layers, selection.at));
   SelectedArea area;
   for (const auto& view : views) area.resolution = std::max(area.resolution, view.layer.resolution);
-  if (selection.where)
-    for (const auto& slug : layers_of(*selection.where))
-      if (const auto found = room_.state(slug))
-        area.resolution = std::max(area.resolution, found->layer.resolution);
-  if (selection.changed)
-    for (const auto& slug : selection.changed->layers)
-      if (const auto found = room_.state(slug))
-        area.resolution = std::max(area.resolution, found->layer.resolution);
+  for (const auto& slug : layers_read_by(selection))
+    if (const auto found = room_.state(slug))
+      area.resolution = std::max(area.resolution, found->layer.resolution);
+  std::optional<int> of_painted;
+  if (options.painted) {
+    of_painted = STRATA_TRY(room_.state(*options.painted)).layer.resolution;
+    area.resolution = std::max(area.resolution, *of_painted);
+  }
   if (area.resolution == 0) area.resolution = room_.model().default_resolution;
   struct Selected {
     std::shared_ptr<const mesh::SurfaceMap> map;
@@ -280,6 +225,7 @@ Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
   };
   std::map<int, Selected> of_resolution;  // the selection for each resolution, shared by its layers
   std::set<int> resolutions{area.resolution};
+  if (of_painted) resolutions.insert(*of_painted);
   for (const auto& view : views) resolutions.insert(view.layer.resolution);
   std::vector<std::shared_ptr<const mesh::SurfaceMap>> maps;
   std::vector<const mesh::SurfaceMap*> of_maps;
@@ -309,6 +255,9 @@ Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
     auto counted = STRATA_TRY(count(view, *here.map, here.within(), !selection.at, options));
     area.layers.emplace(view.layer.slug, std::move(counted));
   }
+  if (of_painted)
+    if (auto& texels = of_resolution.at(*of_painted).texels)
+      area.painted = SelectedArea::Texels{*of_painted, std::move(*texels)};
   return area;
 }
 

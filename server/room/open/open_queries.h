@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "query/conditions/texel_selection.h"
+#include "query/sampling/texel_appearance.h"
 #include "room/open/open_room.h"
 #include "room/queries.h"
 
@@ -65,6 +66,24 @@ class OpenRoom::QueriesPart final : public Queries {
   // Returns nullopt for the whole surface.
   Result<std::optional<query::TexelSelection>> texels_within(const Selection& selection,
                                                              const mesh::SurfaceMap& map);
+  // Returns the texels of one region of the selection. Only those in `inside` matter; null means
+  // all.
+  Result<query::TexelSelection> texels_of(const Selection::Region& region,
+                                          const Selection& selection, const mesh::SurfaceMap& map,
+                                          const query::TexelSelection* inside);
+  Result<query::TexelSelection> texels_of(const Selection::Combined& combined,
+                                          const Selection& selection, const mesh::SurfaceMap& map);
+  // Evaluates a condition only for the texels in `inside`, so a small area needs little time.
+  Result<query::TexelSelection> texels_where(const Expression& condition,
+                                             const Selection& selection,
+                                             const mesh::SurfaceMap& map, const std::string& field,
+                                             const query::TexelSelection* inside);
+  // `field` is the name of the region in errors.
+  Result<query::TexelSelection> texels_like(const Selection::Like& like, At at,
+                                            const mesh::SurfaceMap& map, const std::string& field);
+  Result<std::shared_ptr<const query::TexelAppearance>> colors(const Selection::Like& like,
+                                                               const mesh::SurfaceMap& map,
+                                                               const std::string& field);
   // Like `texels_within`, for each map.
   Result<std::vector<std::optional<query::TexelSelection>>> select_texels(
       const Selection& selection, std::span<const mesh::SurfaceMap* const> maps);

@@ -40,6 +40,7 @@ OpenRoom::OpenRoom(const RoomServices& services, Model model, std::int64_t epoch
       maps_(std::make_shared<SurfaceMaps>(geometry_, services.renderer, services.memory,
                                           services.workers)),
       surface_lookup_(std::make_shared<SurfaceLookup>(geometry_, services.memory)),
+      appearance_(std::make_shared<AppearanceCache>(geometry_, services.memory)),
       model_(std::move(model)),
       last_used_(std::chrono::steady_clock::now()),
       recovery_(strand_),
@@ -425,7 +426,7 @@ void OpenRoom::touch() {
 }
 
 bool OpenRoom::drop_map() {
-  return past_layers_->drop_unused() || surface_lookup_->drop_graphs() ||
+  return past_layers_->drop_unused() || appearance_->drop() || surface_lookup_->drop_graphs() ||
          run_on(strand_, [&] { return pipeline_->is_still() && maps_->drop_oldest(); });
 }
 
@@ -437,7 +438,10 @@ bool OpenRoom::drop_large_unused_maps(std::chrono::steady_clock::time_point now)
   if (!oldest || *oldest >= since) return false;
   const bool dropped =
       run_on(strand_, [&] { return pipeline_->is_still() && maps_->drop_unused(since, kLarge); });
-  if (dropped) surface_lookup_->drop_graphs();
+  if (dropped) {
+    surface_lookup_->drop_graphs();
+    appearance_->drop();
+  }
   return dropped;
 }
 
@@ -459,6 +463,7 @@ void OpenRoom::close(const Error& why) {
   record_features_->stop();
   past_layers_->stop();
   surface_lookup_->stop();
+  appearance_->stop();
   run_on(strand_, [&] {
     recovery_.closed = true;
     recovery_.timer.cancel();

@@ -19,6 +19,7 @@
 #include "domain/layers/tile_mirror.h"
 #include "domain/scene/model.h"
 #include "room/at.h"
+#include "room/caches/appearance_cache.h"
 #include "room/caches/past_layers.h"
 #include "room/caches/record_colors.h"
 #include "room/caches/record_features.h"
@@ -209,6 +210,7 @@ class OpenRoom final : public Room,
   std::shared_ptr<RecordFeatures> record_features_;
   std::shared_ptr<PastLayers> past_layers_;
   const std::shared_ptr<SurfaceLookup> surface_lookup_;
+  const std::shared_ptr<AppearanceCache> appearance_;
   std::shared_ptr<EditPipeline> pipeline_;
 
   // Changed on the strand while holding `mutex_`. The strand may read without the mutex, and other

@@ -5,11 +5,15 @@
 
 #include "core/text/closest.h"
 #include "expression/expression_parser.h"
+#include "expression/surface_functions.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
 
 namespace strata::room {
 namespace {
+
+// The names must not be suggested as names of layers.
+static_assert(query::kSurfaceFunctionPrefix.starts_with(kShapePrefix));
 
 // Returns the part where the text first names the layer, for the error message.
 const Expression& first_name(const Expression& e) {
@@ -101,8 +105,15 @@ Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& la
        {Place{"x", Expression::Op::x}, Place{"y", Expression::Op::y}, Place{"z", Expression::Op::z},
         Place{"area", Expression::Op::area}})
     if (e.name == name) {
+      const bool tests_value = e.op == Expression::Op::valid;
       e.op = op;
       e.name.clear();
+      if (!tests_value) return {};
+      Expression known;
+      known.op = Expression::Op::known;
+      known.position = e.position;
+      known.parts.push_back(std::move(e));
+      e = std::move(known);
       return {};
     }
   if (std::ranges::find(kShapeNames, e.name) == kShapeNames.end())

@@ -135,6 +135,14 @@ Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType typ
               return query::select_connected(context.map, graph, context.tiles, start);
             });
           },
+          [&](const FillEdit::Selected& chosen) -> Changes {
+            if (chosen.resolution != context.map.resolution)
+              return fail(ErrorCode::conflict, "Layer was changed",
+                          "The resolution of the layer was changed while the area was selected. "
+                          "Select the area again.",
+                          "layer");
+            return selected(query::TexelSelection(*chosen.texels));
+          },
       },
       fill.region);
 }

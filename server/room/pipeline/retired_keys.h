@@ -14,9 +14,9 @@ namespace strata::room {
 // set is needed because a stroke may have begun before the deletion. Thread-safe.
 class RetiredKeys {
  public:
-  void retire(TableId table_id, std::int64_t key) {
+  void retire(TableId table_id, std::span<const std::int64_t> keys) {
     std::lock_guard lock(mutex_);
-    keys_.emplace(table_id, key);
+    for (const auto key : keys) keys_.emplace(table_id, key);
   }
   void admit(TableId table_id, std::span<const std::int64_t> keys) {
     std::lock_guard lock(mutex_);

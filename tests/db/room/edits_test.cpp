@@ -135,6 +135,7 @@ TEST_F(RoomTest, a_patch_leaves_what_was_painted_since_and_can_be_undone) {
   ASSERT_TRUE(send(stroke(layer, 1, {{300, 240}}, 30, "anna")));
   const auto then = room()->queries().statistics("layer")->texels;
   const room::PatchEdit patch = repaint(room()->queries().tiles("layer", {})->tiles, 5);
+  EXPECT_EQ(room::keys_in(patch.patch), std::vector<std::int64_t>{5});
   // Ben paints over a part, and erases another part.
   ASSERT_TRUE(send(stroke(layer, 2, {{320, 240}}, 15, "ben")));
   auto erase = stroke(layer, 0, {{280, 240}}, 10, "ben");

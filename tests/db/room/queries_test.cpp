@@ -8,6 +8,7 @@
 
 #include "core/polygon_area.h"
 #include "expression/expression_parser.h"
+#include "query/sampling/texel_samples.h"
 #include "query/statistics/cross_table.h"
 #include "query/statistics/key_areas.h"
 #include "room/edit.h"
@@ -107,12 +108,52 @@ TEST_F(RoomQueries, a_selection_adds_up_to_what_the_layers_hold_there) {
   EXPECT_EQ(unknown.error().field, "where");
 }
 
+TEST_F(RoomQueries, similar_surface_is_selected_and_painted_in_one_edit) {
+  using Like = room::Selection::Like;
+  ASSERT_TRUE(send(stroke(features_, 3, {{300, 240}}, 50)));
+  ASSERT_TRUE(send(stroke(features_, 3, {{480, 240}}, 20)));
+  const auto marks = room()->queries().statistics("marks");
+  const auto select = [&](Like like) {
+    room::Selection selection;
+    selection.within = room::Region{std::move(like)};
+    return selection;
+  };
+  Like wand{.at = room::PixelPlace{view(), 300, 240}, .by = Like::By::value, .layer = "marks"};
+  const auto one = room()->queries().select(select(wand), {});
+  ASSERT_TRUE(one) << one.error().detail;
+  EXPECT_EQ(one->resolution, 2048);
+  EXPECT_GT(one->texels, 0u);
+  EXPECT_LT(one->texels, marks->texels);
+  wand.contiguous = false;
+  EXPECT_EQ(room()->queries().select(select(wand), {})->texels, marks->texels);
+
+  Like normals{.at = wand.at, .by = Like::By::normal, .tolerance = 180};
+  EXPECT_NEAR(room()->queries().select(select(normals), {})->share, 1, 1e-6);
+  Like colors{.at = wand.at, .by = Like::By::color, .tolerance = 200};
+  EXPECT_NEAR(room()->queries().select(select(colors), {})->share, 1, 1e-6);
+  colors.image = SurfaceImageId{9999};
+  EXPECT_EQ(room()->queries().select(select(colors), {}).error().field, "within.like.look");
+  Like nowhere{.at = room::PixelPlace{view(), 2, 2}, .by = Like::By::normal};
+  EXPECT_EQ(room()->queries().select(select(nowhere), {}).error().field, "within.like.at");
+
+  const auto texels = room()->queries().surface_texels("depth", select(wand));
+  ASSERT_TRUE(texels);
+  room::FillEdit fill{.value_bits = *encode_value(ValueType::f32, 0.5)};
+  const auto chosen = std::make_shared<const query::TexelSelection>(*texels->within);
+  fill.region = room::FillEdit::Selected{chosen, 2048};
+  const auto painted = send(request(depth_, fill));
+  ASSERT_TRUE(painted) << painted.error().detail;
+  EXPECT_EQ(room()->queries().statistics("depth")->texels, marks->texels);
+  fill.region = room::FillEdit::Selected{chosen, 1024};
+  EXPECT_EQ(send(request(depth_, fill)).error().code, ErrorCode::conflict);
+}
+
 // A small disc on a smooth surface is flat enough.
 TEST_F(RoomQueries, around_a_place_lies_the_area_of_a_disc) {
   const glm::dvec3 place = seen_at(320, 240);
   for (const double radius : {4.0, 8.0}) {
     room::Selection selection;
-    selection.within = room::Selection::Around{place, radius};
+    selection.within = room::Region{room::Selection::Around{place, radius}};
     const auto area = room()->queries().select(selection, {});
     ASSERT_TRUE(area) << area.error().detail;
     const double disc = std::numbers::pi * radius * radius * 1e-6;
@@ -120,7 +161,7 @@ TEST_F(RoomQueries, around_a_place_lies_the_area_of_a_disc) {
     EXPECT_LE(glm::distance(area->bounds_min, area->bounds_max), 2 * radius * std::sqrt(3.0));
   }
   room::Selection nowhere;
-  nowhere.within = room::Selection::Around{room::PixelPlace{view(), 2, 2}, 5};
+  nowhere.within = room::Region{room::Selection::Around{room::PixelPlace{view(), 2, 2}, 5}};
   const auto refused = room()->queries().select(nowhere, {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().field, "within.at");
@@ -134,7 +175,7 @@ TEST_F(RoomQueries, inside_an_outline_lies_what_a_polygon_paints) {
   const auto painted = send(request(features_, polygon));
   ASSERT_TRUE(painted);
   room::Selection selection;
-  selection.within = room::Outline{view(), path, false};
+  selection.within = room::Region{room::Outline{view(), path, false}};
   const auto area = room()->queries().select(selection, {"marks"});
   ASSERT_TRUE(area) << area.error().detail;
   EXPECT_EQ(area->texels, painted->texels_changed);
@@ -147,7 +188,7 @@ TEST_F(RoomQueries, inside_an_outline_lies_what_a_polygon_paints) {
 TEST_F(RoomQueries, the_picture_of_a_selection_shows_where_the_camera_sees_it) {
   const std::vector<glm::dvec2> path = {{250, 200}, {400, 190}, {330, 300}};
   room::Selection selection;
-  selection.within = room::Outline{view(), path, false};
+  selection.within = room::Region{room::Outline{view(), path, false}};
   room::StatisticsOptions options;
   const int columns = static_cast<int>(view().width) / 4,
             rows = static_cast<int>(view().height) / 4;

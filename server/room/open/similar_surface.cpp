@@ -1,0 +1,62 @@
+// The selection of surface that looks like the surface at a position.
+#include <limits>
+
+#include "mesh/parallel.h"
+#include "query/conditions/similar.h"
+#include "room/caches/appearance_cache.h"
+#include "room/open/open_queries.h"
+#include "room/pipeline/region.h"
+
+namespace strata::room {
+
+Result<AppearanceCache::Texels> OpenRoom::QueriesPart::colors(const Selection::Like& like,
+                                                              const mesh::SurfaceMap& map,
+                                                              const std::string& field) {
+  SurfaceImageCache& images = room_.surface_image_cache();
+  AppearanceCache::Sources sources;
+  if (like.image) {
+    const auto image = images.find(to_string(*like.image));
+    if (!image)
+      return fail(ErrorCode::invalid, "Surface image not found", "The surface image was deleted.",
+                  field + ".like.look");
+    sources = {false, {*image}};
+    sources.images.front().opacity = 1;  // only its own colors are compared
+  } else {
+    sources.images = images.all();
+    std::erase_if(sources.images,
+                  [](const SurfaceImage& image) { return !image.visible || image.opacity <= 0; });
+  }
+  auto colors = room_.appearance_->colors(
+      map, std::move(sources),
+      [&](const SurfaceImage& image, int side) { return images.picture(image.id, side); });
+  if (!colors && colors.error().code == ErrorCode::invalid)
+    colors.error().field = field + ".like.by";
+  return colors;
+}
+
+Result<query::TexelSelection> OpenRoom::QueriesPart::texels_like(const Selection::Like& like, At at,
+                                                                 const mesh::SurfaceMap& map,
+                                                                 const std::string& field) {
+  const auto start =
+      STRATA_TRY(find_place(like.at, map, *room_.surface_lookup_, field + ".like.at"));
+  const auto graph = STRATA_TRY(room_.surface_lookup_->graph(map));
+  query::Similarity similarity{start.texel, start.position, std::numeric_limits<float>::infinity(),
+                               like.tolerance, like.contiguous};
+  if (like.radius) similarity.radius = static_cast<float>(*like.radius);
+  const int threads = mesh::background_threads();
+  switch (like.by) {
+    case Selection::Like::By::color: {
+      const auto texels = STRATA_TRY(colors(like, map, field));
+      return query::select_similar_colors(map, *graph, *texels, similarity, threads);
+    }
+    case Selection::Like::By::normal: {
+      const auto texels = STRATA_TRY(room_.appearance_->normals(map));
+      return query::select_similar_normals(map, *graph, *texels, similarity, threads);
+    }
+    case Selection::Like::By::value: break;
+  }
+  const auto views = STRATA_TRY(room_.layer_views({like.layer}, at));
+  return query::select_similar_values(map, *graph, views.front(), similarity, threads);
+}
+
+}  // namespace strata::room
