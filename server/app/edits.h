@@ -14,7 +14,9 @@ struct EditCounters {
   std::atomic<std::uint64_t> applied{0}, saved{0}, unsaved{0}, refused{0};
 };
 
-// Submits the edit to the room and waits until the edit is durable or refused. Blocks.
+// Submits the edit to the room and waits until the edit is durable or refused. The edit belongs to
+// the current Question, if any: if the question ends before the edit is painted, the edit is
+// refused. Blocks.
 Result<room::EditAnswer> edit_and_wait(room::Room& room, room::EditRequest edit,
                                        EditCounters& counters);
 

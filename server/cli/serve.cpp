@@ -392,6 +392,7 @@ int run(ServeOptions options) {
     rooms.drain();
   }
   (*server)->stop();
+  jobs.stop();  // jobs use parts of the server, and a canceled job may still submit an edit
   if (!lease) rooms.drain();
   if (lease) lease->leave();
   return 0;

@@ -86,6 +86,15 @@ Result<void> check_shows_nothing(store::Store& store, const Table& table, const 
   return {};
 }
 
+Result<void> check_all_may_see(const Layer& source, const Layer& painted,
+                               const std::string& field) {
+  if (source.visibility <= painted.visibility) return {};
+  return fail(ErrorCode::invalid, "Layer is hidden from some users",
+              "Fewer users see " + source.name + " than " + painted.name +
+                  ". Choose a layer with the same visibility.",
+              field);
+}
+
 Result<bool> sees_all_of(store::Store& store, Role role, ModelId model_id,
                          const std::string& text) {
   if (sees(role, Visibility::curators)) return true;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/ids.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
@@ -22,6 +24,10 @@ Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
 // layer that is visible to more users is colored by the column or computed from it.
 Result<void> check_shows_nothing(store::Store& store, const Table& table, const Column& column,
                                  Visibility visibility);
+
+// Checks that all users who see the painted layer may also see the layer from which it is painted.
+// Otherwise refuses the layer (422 at `field`).
+Result<void> check_all_may_see(const Layer& source, const Layer& painted, const std::string& field);
 
 // Returns whether the role can see all content of the model that the formula names.
 Result<bool> sees_all_of(store::Store& store, Role role, ModelId model_id,

@@ -107,37 +107,42 @@ Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& r
 
 }  // namespace
 
+std::vector<query::LayerCover> covers_of(const FigureRequest& request) {
+  std::vector<query::LayerCover> covers;
+  for (const Layer& layer : request.layers) covers.push_back(cover_of(request, layer));
+  return covers;
+}
+
 Result<std::vector<figure::Legend>> legends_of(store::Store& store, const FigureRequest& request,
                                                const figure::Drawing& drawing) {
+  if (request.layers.empty()) return std::vector<figure::Legend>{};
   const Camera camera = figure::camera_of(drawing);
   const double cells = static_cast<double>(camera.width) * camera.height;
   const double coarser = std::max(1.0, std::sqrt(cells / kMaxCells));
   std::vector<std::string> refs;
-  std::vector<query::LayerCover> covers;
-  for (const Layer& layer : request.layers) {
-    refs.push_back(to_string(layer.id));
-    covers.push_back(cover_of(request, layer));
+  for (const Layer& layer : request.layers) refs.push_back(to_string(layer.id));
+  auto seen = STRATA_TRY(request.room->pictures().seen_layers(
+      refs, covers_of(request), camera, std::max(1, static_cast<int>(camera.width / coarser)),
+      std::max(1, static_cast<int>(camera.height / coarser)), request.shown.at));
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (!request.layers[i].table) continue;
+    const auto marked = STRATA_TRY(marked_keys(store, request, request.layers[i], camera));
+    seen[i].is_seen |= !marked.empty();
+    seen[i].values.insert(marked.begin(), marked.end());
   }
+  return legends_of(store, request, seen);
+}
+
+Result<std::vector<figure::Legend>> legends_of(store::Store& store, const FigureRequest& request,
+                                               const std::vector<query::SeenLayer>& seen) {
   std::vector<figure::Legend> legends;
-  if (refs.empty()) return legends;
-  const auto seen = request.room->pictures().seen_layers(
-      refs, covers, camera, std::max(1, static_cast<int>(camera.width / coarser)),
-      std::max(1, static_cast<int>(camera.height / coarser)), request.shown.at);
-  if (!seen) return tl::unexpected(seen.error());
   for (std::size_t i = request.layers.size(); i-- > 0;) {  // the topmost layer first
     const Layer& layer = request.layers[i];
     const Palette& palette = palette_of(request, layer);
-    std::set<double> there = (*seen)[i].values;
-    bool is_shown = (*seen)[i].is_seen;
-    if (layer.table) {
-      const auto marked = STRATA_TRY(marked_keys(store, request, layer, camera));
-      is_shown |= !marked.empty();
-      there.insert(marked.begin(), marked.end());
-    }
     // Also true if unreviewed edits only erased texels.
     const bool waits = request.shown.provisional.contains(layer.id);
-    if (!is_shown && !waits) continue;
-    legends.push_back(figure::legend_of(layer, palette, &there, request.language));
+    if (!seen[i].is_seen && !waits) continue;
+    legends.push_back(figure::legend_of(layer, palette, &seen[i].values, request.language));
     if (waits) {
       const Palette::Point& waiting = room::provisional_palette()->points.front();
       legends.back().entries.push_back(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/figures/figures.h"
+#include "query/sampling/seen_layers.h"
 
 namespace strata::app {
 
@@ -9,5 +10,11 @@ namespace strata::app {
 // the drawing, and areas smaller than a dot of the drawing. Blocks.
 Result<std::vector<figure::Legend>> legends_of(store::Store& store, const FigureRequest& request,
                                                const figure::Drawing& drawing);
+
+// Returns what query::seen_layers needs to know about the layers of the figure.
+std::vector<query::LayerCover> covers_of(const FigureRequest& request);
+// Returns the legends of the layers that are visible. `seen` has one element for each layer.
+Result<std::vector<figure::Legend>> legends_of(store::Store& store, const FigureRequest& request,
+                                               const std::vector<query::SeenLayer>& seen);
 
 }  // namespace strata::app

@@ -6,9 +6,8 @@
 #include <map>
 #include <set>
 
+#include "app/figures/figure_file.h"
 #include "app/figures/figure_legend.h"
-#include "core/text/number_text.h"
-#include "core/uuid.h"
 #include "domain/scene/compass.h"
 #include "mesh/surface/geometry.h"
 #include "room/pictures.h"
@@ -118,33 +117,6 @@ Result<std::vector<figure::Label>> labels_of(store::Store& store, const FigureRe
   return figure::place_labels(requests, drawing_mm);
 }
 
-struct Composed {
-  figure::SheetLayout layout;
-  double scale;
-  double tightness;  // n of the largest scale 1 : n at which the drawing fits
-};
-
-// Chooses the orientation that allows the larger scale, or portrait if both are equal. Uses the
-// requested scale or the largest scale that fits.
-Composed compose(const FigureRequest& request, const std::vector<figure::Legend>& legends,
-                 const glm::dvec2& size, double metres_per_unit) {
-  constexpr double kMargin = 1.02;
-  std::optional<Composed> best;
-  for (const bool landscape : {false, true}) {
-    if (request.landscape && *request.landscape != landscape) continue;
-    figure::SheetLayout layout(figure::paper_mm(request.paper, landscape), request.captions,
-                               legends, request.dpi);
-    const glm::dvec2 room_mm = layout.drawing_mm(),
-                     needed = size * (metres_per_unit * 1000) / room_mm;
-    const double tightness = std::max(needed.x, needed.y);
-    if (best && tightness >= best->tightness) continue;
-    const double scale =
-        request.scale.value_or(figure::fitting_scale(size * kMargin, room_mm, metres_per_unit));
-    best = Composed{std::move(layout), scale, tightness};
-  }
-  return std::move(*best);
-}
-
 // Returns the direction of true north on the paper. Returns nothing if the angle between north and
 // the paper is too large.
 std::optional<glm::dvec2> north_on(const figure::Plane& plane, const Model& model) {
@@ -204,13 +176,6 @@ Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawin
   return picture;
 }
 
-// Returns a file name such as "pot-front-1-5.pdf".
-std::string file_name(const FigureRequest& request, double scale) {
-  const std::string text = scale >= 1 ? "1-" + short_number(scale) : short_number(1 / scale) + "-1";
-  return request.room->model().slug + "-" + request.from + "-" + text +
-         std::string(figure::extension(request.format));
-}
-
 }  // namespace
 
 Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, ByteBudget& budget,
@@ -231,7 +196,7 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
           ? 2.0 * glm::max(glm::abs(glm::dvec2(extent->max - request.plane.of(*request.center))),
                            glm::abs(glm::dvec2(request.plane.of(*request.center) - extent->min)))
           : glm::dvec2(extent->max - extent->min);
-  const auto drawing_on = [&](const Composed& composed) {
+  const auto drawing_on = [&](const ChosenSheet& composed) {
     figure::Drawing drawing;
     drawing.plane = request.plane;
     drawing.center = request.center ? glm::dvec2(request.plane.of(*request.center))
@@ -253,10 +218,10 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
     // Without a legend, the drawing is largest. The legend therefore lists the content of this
     // largest drawing.
     auto seen = STRATA_TRY(
-        legends_of(store, request, drawing_on(compose(request, {}, size, model.metres()))));
+        legends_of(store, request, drawing_on(choose_sheet(request, {}, size, model.metres()))));
     legends = std::move(seen);
   }
-  const Composed composed = compose(request, legends, size, model.metres());
+  const ChosenSheet composed = choose_sheet(request, legends, size, model.metres());
   const figure::SheetLayout& layout = composed.layout;
   const figure::Drawing drawing = drawing_on(composed);
 
@@ -266,17 +231,7 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
   const auto picture = STRATA_TRY(draw(request, drawing, progress));
   progress.begin_stage(0.75, 1);
   const auto sheet = layout.finish(drawing.scale, north_on(request.plane, model), labels);
-  auto file = std::make_shared<TemporaryFile>();
-  file->path = folder / (to_string(random_uuid()) + ".figure");
-  file->name = file_name(request, drawing.scale);
-  file->media_type = figure::media_type(request.format);
-  const figure::Document document{request.captions.title, request.captions.credit};
-  if (auto written = figure::write_figure(sheet, picture, request.dpi, request.format, document,
-                                          file->path, progress);
-      !written)
-    return tl::unexpected(written.error());
-  file->bytes = std::filesystem::file_size(file->path);
-  return file;
+  return write_figure_file(request, sheet, picture, drawing.scale, folder, progress);
 }
 
 }  // namespace strata::app

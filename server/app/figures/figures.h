@@ -14,6 +14,7 @@
 #include "domain/tables/table.h"
 #include "figure/files.h"
 #include "figure/layout.h"
+#include "mesh/rollout/fit_developed_surface.h"
 #include "room/pictures.h"
 #include "room/room.h"
 #include "store/store.h"
@@ -29,6 +30,14 @@ struct FigureRequest {
   figure::Plane plane;
   std::string from;                    // "top", "view": part of the file name
   std::optional<glm::dvec3> center{};  // in world coordinates
+  // Unrolls the surface instead of drawing it on the plane. Labels, section and light then have no
+  // effect.
+  struct Rollout {
+    mesh::FitRequest fit;
+    std::optional<double> cut;  // in radians
+    bool relief = true;
+  };
+  std::optional<Rollout> rollout;
   std::vector<glm::dvec4> section;
   std::optional<double> scale;
   figure::Paper paper = figure::Paper::a4;
@@ -48,8 +57,8 @@ struct FigureRequest {
   std::optional<Labels> labels;
 };
 
-// Draws the figure and writes it to a file in `folder`. Returns 422 for a section that removes the
-// whole model, and 503 if too many figures are being created. Blocks.
+// Draws a figure on a plane and writes it to a file in `folder`. Returns 422 for a section that
+// removes the whole model, and 503 if too many figures are being created. Blocks.
 Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, ByteBudget& budget,
                                                          const FigureRequest& request,
                                                          const std::filesystem::path& folder,

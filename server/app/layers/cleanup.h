@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "app/services.h"
@@ -21,20 +22,21 @@
 // (room::PatchEdit). All functions block.
 //
 // To add an operation: add its computation to query/regions, its name here, to `cleaned_values`, to
-// the schema `Cleanup` and to the dialog of the page. Open and close in millimeters belong here
-// when the distances along the surface exist.
+// the schema `Cleanup` and to the dialog of the page.
 namespace strata::app {
 
 struct Cleanup {
-  enum class Operation { sieve, fill_holes, majority, border };
+  enum class Operation { sieve, fill_holes, majority, border, open, close };
   Operation operation = Operation::sieve;
   double area_m2 = 0;                                  // sieve, fill_holes
   query::SieveTo to = query::SieveTo::longest_border;  // sieve
   double radius_m = 0;                                 // majority
+  // border, open, close: the value of the regions. Empty: all borders, or the only value of the
+  // layer
+  std::optional<std::uint32_t> of_bits{};
+  double width_m = 0;  // border: of the line; open, close: of the parts and gaps
   // border
-  std::optional<LayerId> from{};           // layer with the regions; empty: the layer itself
-  std::optional<std::uint32_t> of_bits{};  // value of the regions; empty: all borders
-  double width_m = 0;
+  std::optional<LayerId> from{};  // layer with the regions; empty: the layer itself
   bool inside = false;
   query::TexelValue line{};  // without a value: erase
 };
@@ -48,15 +50,17 @@ struct CleanupEdit {
 };
 
 struct CleanupResult {
-  bool applied = false;
+  bool applied = false;       // texels were changed
   std::uint64_t regions = 0;  // that get another value; for records of pieces, the new records
   std::uint64_t texels = 0;   // that change
   double area_m2 = 0;         // of these texels
   std::uint64_t skipped_texels = 0;  // that were edited in the meantime
   std::int64_t sequence = 0;         // of the edit; 0 without an edit
   bool provisional = false;
-  bool repeated = false;             // the edit with this id was applied before
-  std::vector<std::int64_t> keys{};  // of the new records
+  // For records of pieces: the keys of the new records.
+  std::vector<std::int64_t> keys{};
+  // The keys whose records have no texels, because others painted their pieces in the meantime.
+  std::vector<std::int64_t> unpainted_keys{};
 };
 
 // Changes the layer. Refuses a locked layer (403), a radius that is too large and layers with
@@ -80,10 +84,22 @@ struct RegionSource {
 };
 Result<RegionSource> region_source(const Services& services, room::Room& room, LayerId layer);
 
-// Submits the patch as an edit of the layer. Returns the result without `regions` and `keys`.
+// Checks that regions of `source` can be shown on the painted layer: the layers have the same
+// resolution, and users who see the painted layer may also see the source. The error names `field`.
+Result<void> check_can_show(const Layer& painted, const Layer& source, const std::string& field);
+
+// Submits the patch as an edit of the layer. `result` contains the regions and keys, which the
+// journal stores for find_saved.
 Result<CleanupResult> apply_patch(const Services& services, room::Room& room,
                                   const RegionSource& target, query::TexelPatch patch,
-                                  const CleanupEdit& edit, std::vector<std::int64_t> keys,
+                                  CleanupResult result, const CleanupEdit& edit,
                                   Progress& progress);
+
+// Returns the result of the edit if the journal contains it. This is possible even if the edit
+// returned an Error, because a commit can succeed although its confirmation is lost.
+// `skipped_texels` and `unpainted_keys` are empty, because the journal does not contain them.
+// Refuses (422, `Idempotency-Key`) the id of an edit with another record.
+Result<std::optional<CleanupResult>> find_saved(const Services& services, ModelId model,
+                                                const CleanupEdit& edit);
 
 }  // namespace strata::app

@@ -7,24 +7,26 @@
 namespace strata::app {
 namespace {
 
-Result<void> check_other_model(store::Store& store, const jobs::ShapeRecipe& recipe) {
-  if (recipe.model.empty()) return {};
+// Returns nothing if the recipe needs no other model. A model of a project that the roles cannot
+// see does not exist for the user.
+Result<std::optional<Model>> other_model(store::Store& store, const jobs::ShapeRecipe& recipe,
+                                         const Roles& roles) {
+  if (recipe.model.empty()) return std::nullopt;
   auto other = store.models().find(recipe.model);
-  if (other) return {};
-  Error problem = other.error();
-  if (problem.code == ErrorCode::not_found)
-    problem = {ErrorCode::invalid, "Model not found", "There is no model \"" + recipe.model + "\".",
-               "compute.model"};
-  return tl::unexpected(std::move(problem));
+  if (other ? roles.in(other->project_id) < Role::viewer
+            : other.error().code == ErrorCode::not_found)
+    return fail(ErrorCode::invalid, "Model not found",
+                "There is no model \"" + recipe.model + "\".", "compute.model");
+  if (!other) return tl::unexpected(other.error());
+  return std::move(*other);
 }
 
 }  // namespace
 
 Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe recipe,
-                                       const Model& model) {
-  auto complete = STRATA_TRY(jobs::completed(std::move(recipe), model));
-  STRATA_TRY(check_other_model(store, complete));
-  return complete;
+                                       const Model& model, const Roles& roles) {
+  const auto other = STRATA_TRY(other_model(store, recipe, roles));
+  return jobs::completed(std::move(recipe), model, other ? &*other : nullptr);
 }
 
 Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLayers& layers,

@@ -5,6 +5,7 @@
 #include "app/layers/new_layers.h"
 #include "core/progress.h"
 #include "domain/layers/layer.h"
+#include "domain/people/role.h"
 #include "domain/scene/model.h"
 #include "jobs/shape_layer.h"
 #include "store/store.h"
@@ -12,10 +13,10 @@
 namespace strata::app {
 
 // Completes the recipe for the model. Returns `invalid` with a field of `compute` if the model does
-// not have a property of the recipe, or if the model for comparison does not exist. Runs before the
-// job, so users see mistakes immediately.
+// not have a property of the recipe, or if the model for comparison does not exist in a project
+// that `roles` can see. Runs before the job, so users see mistakes immediately.
 Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe recipe,
-                                       const Model& model);
+                                       const Model& model, const Roles& roles);
 
 // Computes a layer from the shape of the model and paints it. Properties in `requested` have
 // precedence over those of the recipe. At first, only `user` can see the layer. Blocks.

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "app/edits.h"
+#include "app/layers/surface_functions.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
 #include "domain/people/role.h"
@@ -12,6 +13,7 @@
 #include "expression/expression_parser.h"
 #include "jobs/shape_layer.h"
 #include "room/edit.h"
+#include "room/edits.h"
 #include "room/layers.h"
 #include "room/pipeline/expression_binding.h"
 #include "room/queries.h"
@@ -53,20 +55,55 @@ Result<TileMap> shape_tiles(store::Store& store, const room::Room& room, const s
   return std::move(shape.tiles);
 }
 
-Result<std::vector<query::LayerView>> shape_views(store::Store& store, const room::Room& room,
-                                                  const Expression& expression, int resolution,
-                                                  Progress& progress) {
-  std::vector<query::LayerView> views;
-  for (const std::string& name : room::shapes_read(expression, views_of(room.layers().all()))) {
-    auto tiles = STRATA_TRY(shape_tiles(store, room, name, resolution, progress));
-    query::LayerView view;
-    view.layer.slug = std::string(room::kShapePrefix) + name;
-    view.layer.type = ValueType::f32;
-    view.layer.resolution = resolution;
-    view.snapshot.tiles = std::move(tiles);
-    views.push_back(std::move(view));
+Result<query::LayerView> shape_view(store::Store& store, const room::Room& room,
+                                    const std::string& name, int resolution, Progress& progress) {
+  auto tiles = STRATA_TRY(shape_tiles(store, room, name, resolution, progress));
+  query::LayerView view;
+  view.layer.slug = std::string(room::kShapePrefix) + name;
+  view.layer.type = ValueType::f32;
+  view.layer.resolution = resolution;
+  view.snapshot.tiles = std::move(tiles);
+  return view;
+}
+
+// The formula of a layer, with everything that is computed before the edit evaluates it.
+struct PreparedFormula {
+  Expression expression;                 // has names of `views` in place of functions
+  std::vector<query::LayerView> views;   // shape values and functions along the surface
+  std::optional<std::int64_t> sequence;  // of the state that the functions read
+  MemoryLedger::Share memory;
+};
+
+Result<PreparedFormula> prepare(const Services& services, room::Room& room, const Layer& layer,
+                                const Author& author, Progress& progress) {
+  const auto expression = STRATA_TRY(parse_formula(layer.formula->expression));
+  auto formula = STRATA_TRY(query::separate_surface_functions(expression, "expression"));
+  const auto shapes = room::shapes_read(expression, views_of(room.layers().all()));
+  const std::size_t steps = shapes.size() + formula.functions.size();
+  PreparedFormula prepared;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    progress.begin_stage(double(i) / double(steps), double(i + 1) / double(steps));
+    prepared.views.push_back(
+        STRATA_TRY(shape_view(services.store, room, shapes[i], layer.resolution, progress)));
   }
-  return views;
+  if (!formula.functions.empty()) {
+    prepared.memory =
+        STRATA_TRY(reserve_surface_functions(services, room, layer, formula.functions.size()));
+    // Read first: if a layer changes afterwards, the result is out of date. The functions read the
+    // applied edits. The journal writes these edits before the edit that paints the result.
+    prepared.sequence = room.edits().sequence();
+    STRATA_TRY(compute_surface_functions(services, room, layer, formula, author, prepared.views,
+                                         progress, shapes.size(), steps));
+  }
+  prepared.expression = std::move(formula.expression);
+  return prepared;
+}
+
+// Returns the sequence of the state that the computed values belong to. Functions along the surface
+// read an earlier state than the edit, if there were edits between.
+std::int64_t computed_sequence(const PreparedFormula& formula, const room::EditAnswer& done) {
+  const std::int64_t read = formula.sequence.value_or(done.sequence);
+  return read + 1 < done.sequence ? read : done.sequence;
 }
 
 bool is_condition(const Layer& layer) {
@@ -136,22 +173,22 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
                   "The expression uses the layer '" + input.slug +
                       "', which was deleted. Change the expression.",
                   "expression");
-  const auto expression = STRATA_TRY(parse_formula(layer.formula->expression));
-  auto shapes =
-      STRATA_TRY(shape_views(services.store, *room, expression, layer.resolution, progress));
-  if (progress.cancelled()) return cancelled_problem();
   // Reads the sequences before the records. If the records change later, the layer is then out of
   // date.
   const auto tables = STRATA_TRY(services.store.layers().table_sequences_of(layer.id));
+  auto formula = STRATA_TRY(prepare(services, *room, layer, author, progress));
+  if (progress.cancelled()) return cancelled_problem();
   room::EditRequest edit{random_uuid(), author, layer.id};
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
-  edit.edit = room::ComputeEdit{expression, std::move(shapes), overwrites};
+  edit.edit = room::ComputeEdit{formula.expression, std::move(formula.views), overwrites};
   const auto done = STRATA_TRY(edit_and_wait(*room, std::move(edit), services.edits));
-  return room->layers().mark_computed(layer.id, layer.formula->expression, done.sequence, tables);
+  return room->layers().mark_computed(layer.id, layer.formula->expression,
+                                      computed_sequence(formula, done), tables);
 }
 
 bool reads_shape(const room::Room& room, const Expression& expression) {
-  return !room::shapes_read(expression, views_of(room.layers().all())).empty();
+  return has_surface_function(expression) ||
+         !room::shapes_read(expression, views_of(room.layers().all())).empty();
 }
 
 Result<Layer> add_formula_layer(const Services& services, const std::shared_ptr<room::Room>& room,

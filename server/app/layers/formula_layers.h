@@ -30,14 +30,17 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
 
 // Computes the content of the layer again, as one edit of the author, and notifies participants.
 // Without `overwrites`, refuses a layer that users have edited (409). Returns the layer after the
-// edit. First computes the normals, height, slope and curvature that the expression reads. This
-// takes as long as creating the corresponding shape layers.
+// edit. First computes the normals, height, slope and curvature that the expression reads, which
+// takes as long as creating the corresponding shape layers, and the functions along the surface.
+// These may read an earlier state than the rest of the expression. If a layer was edited in
+// between, the result is stale. Throws QuestionEnded if the current Question ends, and then changes
+// nothing.
 Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room::Room>& room,
                             const Layer& layer, const Author& author, Progress& progress,
                             bool overwrites = false);
 
-// Returns whether the expression reads the shape of the surface, which takes a long time to
-// compute.
+// Returns whether the expression reads the shape of the surface or has functions along the surface,
+// which take a long time to compute.
 bool reads_shape(const room::Room& room, const Expression& expression);
 
 // Creates a layer with a formula and computes it. If the layer has no palette, fits a palette to

@@ -18,8 +18,10 @@ struct PieceRecords {
 
 // Creates a record for each connected piece of a class of `layer`, the largest first, and paints
 // the keys of the records on the layer `into`. Notifies participants. If a record cannot be
-// written, nothing is painted (422, `columns`). If the keys cannot be painted, the records are
-// deleted again.
+// written, nothing is painted (422, `columns`). If the keys cannot be painted, or if other users
+// have painted all texels of the pieces in the meantime, the records are deleted again. They remain
+// if it is not certain that they are unpainted and unchanged; then the detail of the Error names
+// them.
 Result<CleanupResult> make_piece_records(const Services& services, room::Room& room,
                                          const Layer& layer, const PieceRecords& pieces,
                                          const CleanupEdit& edit, Progress& progress);

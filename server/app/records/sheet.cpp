@@ -1,10 +1,12 @@
 #include "app/records/sheet.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include "app/records/readable_area.h"
 #include "app/records/workbook.h"
 #include "core/text/csv.h"
+#include "core/uuid.h"
 
 namespace strata::app {
 namespace {
@@ -59,6 +61,22 @@ std::string csv_text(const Sheet& sheet, char separator) {
   return text;
 }
 
+Result<std::shared_ptr<const TemporaryFile>> write_csv(const Sheet& sheet, char separator,
+                                                       const std::filesystem::path& folder) {
+  auto file = std::make_shared<TemporaryFile>(folder / (to_string(random_uuid()) + ".csv"));
+  file->name = sheet.name + ".csv";
+  file->media_type = "text/csv; charset=utf-8";
+  const std::string text = csv_text(sheet, separator);
+  file->bytes = text.size();
+  std::ofstream out(file->path, std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out)
+    return fail(ErrorCode::storage_full, "File not written",
+                "The disk of the server is full or not writable, so the file was not made.");
+  return file;
+}
+
 Result<std::shared_ptr<const TemporaryFile>> write_workbook(const Sheet& sheet,
                                                             const std::filesystem::path& folder) {
   std::vector<BookColumn> columns;
@@ -71,7 +89,7 @@ Result<std::shared_ptr<const TemporaryFile>> write_workbook(const Sheet& sheet,
     cells.clear();
     for (const SheetCell& cell : row)
       std::visit([&](const auto& value) { cells.emplace_back(value); }, cell);
-    if (&row == &sheet.rows.back()) book.end_filter();
+    if (sheet.has_totals && &row == &sheet.rows.back()) book.end_filter();
     book.add_row(cells);
   }
   return book.finish(sheet.name + ".xlsx");

@@ -22,6 +22,7 @@ struct Sheet {
   // Number formats for XLSX, by column. May be shorter than the row or contain empty texts. The
   // spreadsheet program then chooses the format.
   std::vector<std::string> number_formats{};
+  bool has_totals = true;  // in the last row
 };
 
 // Keeps the columns whose names end with `area_m2`, for scripts. Appends a copy of each in the unit
@@ -31,8 +32,11 @@ void add_readable_areas(Sheet& sheet);
 // Returns CSV with a byte order mark, which spreadsheet programs need. Escapes text that such a
 // program would run as a formula.
 std::string csv_text(const Sheet& sheet, char separator);
-// Writes XLSX to a file in `folder`. The filters in the first row exclude the last row, which
-// contains totals. Returns storage_full if the disk is full.
+// Writes the text of `csv_text` to a file in `folder`. Returns storage_full if the disk is full.
+Result<std::shared_ptr<const TemporaryFile>> write_csv(const Sheet& sheet, char separator,
+                                                       const std::filesystem::path& folder);
+// Writes XLSX to a file in `folder`. The filters in the first row exclude a last row of totals.
+// Returns storage_full if the disk is full.
 Result<std::shared_ptr<const TemporaryFile>> write_workbook(const Sheet& sheet,
                                                             const std::filesystem::path& folder);
 

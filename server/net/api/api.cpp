@@ -176,11 +176,14 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_extent_routes(router_, context_);
   add_feature_routes(router_, context_);
   add_vertex_routes(router_, context_);
+  add_selection_routes(router_, context_);
   add_snapshot_routes(router_, context_);
   add_timeline_routes(router_, context_);
   add_frame_routes(router_, context_);
   add_figure_routes(router_, context_);
+  add_rollout_routes(router_, context_);
   add_texel_routes(router_, context_);
+  add_change_routes(router_, context_);
   add_cleanup_routes(router_, context_);
   add_shape_routes(router_, context_);
   add_map_routes(router_, context_);

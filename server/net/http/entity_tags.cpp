@@ -10,12 +10,15 @@
 #include "domain/scene/surface_image.h"
 #include "net/api/addressed.h"
 #include "net/api/route_help.h"
+#include "net/auth/project_authorization.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/room.h"
 #include "room/rooms.h"
 #include "room/surface_images.h"
 #include "store/content/layers.h"
+#include "store/content/models.h"
+#include "store/content/objects.h"
 #include "store/content/projects.h"
 #include "store/content/surface_images.h"
 #include "store/store.h"
@@ -182,6 +185,29 @@ StateOf state_of_painted_table(const RouteContext& context) {
     }
     return add_project(text, context, table->project_id) ? std::optional(std::move(text))
                                                          : std::nullopt;
+  };
+}
+
+StateOf state_of_surveys(const RouteContext& context) {
+  return [&context](const Request& request) -> std::optional<std::string> {
+    const auto project = stored_project(context, request);
+    const auto id = id_of<ObjectId>(request, "object");
+    if (!project || !id) return std::nullopt;
+    const auto object = context.store.objects().find(project->id, *id);
+    if (!object) return std::nullopt;
+    std::string text;
+    add(text, object->id);
+    add(text, object->version);
+    for (const Survey& survey : object->surveys) {
+      const auto model = context.store.models().find(to_string(survey.model));
+      if (!model) return std::nullopt;
+      const auto shown = context.rooms.shown_sequence(to_string(survey.model));
+      if (shown.value_or(model->sequence) != model->sequence) return std::nullopt;
+      add(text, model->id);
+      add(text, model->version);
+      add(text, model->sequence);
+    }
+    return add_project(text, context, project->id) ? std::optional(std::move(text)) : std::nullopt;
   };
 }
 

@@ -42,6 +42,9 @@ StateOf state_of_model(const RouteContext& context);
 StateOf state_of_records(const RouteContext& context);
 // For routes that read all layers with keys of the addressed table.
 StateOf state_of_painted_table(const RouteContext& context);
+// For the statistics of the addressed object. Opens no room. Returns nothing while a room shows
+// other edits than the database.
+StateOf state_of_surveys(const RouteContext& context);
 // For the file of a surface image, which never changes.
 StateOf state_of_surface_image(const RouteContext& context);
 

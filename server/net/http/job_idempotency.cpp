@@ -25,10 +25,11 @@ void JobIdempotency::started(const Request& request, JobId job) {
 }
 
 Result<JobId> JobIdempotency::finished(const Request& request, ProjectId project,
-                                       jobs::JobResult result) {
-  auto job = jobs_.add(project, [result = std::move(result)](Progress&) -> Result<jobs::JobResult> {
-    return result;
-  });
+                                       jobs::JobResult result, jobs::JobKind kind) {
+  auto job = jobs_.add(
+      project,
+      [result = std::move(result)](Progress&) -> Result<jobs::JobResult> { return result; },
+      request.user(), kind);
   if (job) started(request, *job);
   return job;
 }

@@ -21,8 +21,10 @@ class JobIdempotency {
   // used with another body.
   Result<std::optional<JobId>> find(const Request& request);
   void started(const Request& request, JobId job);
-  // Adds a finished job for the result of a job that an earlier server process ran, and returns it.
-  Result<JobId> finished(const Request& request, ProjectId project, jobs::JobResult result);
+  // Adds a finished job of the caller for the result of a job that an earlier server process ran,
+  // and returns it.
+  Result<JobId> finished(const Request& request, ProjectId project, jobs::JobResult result,
+                         jobs::JobKind kind);
 
  private:
   struct Started {

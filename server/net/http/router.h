@@ -32,7 +32,9 @@ struct Route {
   BodyKind body = BodyKind::none;
   std::uint64_t max_body = 0;  // bytes
   // The handler stores its response together with its effect (`idempotent_response`). A call with a
-  // repeated Idempotency-Key gets this response, and the handler does not run.
+  // repeated Idempotency-Key gets this response, and the handler does not run. A call is refused
+  // while another call with its key runs. If the handler stores nothing, as for jobs
+  // (JobIdempotency), this is the only effect.
   bool keeps_answer = false;
   // If set, creates the response to a repeated call from the stored one.
   std::function<Result<Response>(const Request& request, const nlohmann::json& stored)> replay{};

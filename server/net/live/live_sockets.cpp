@@ -31,6 +31,15 @@ void LiveSockets::tell_model(ModelId model_id, Visibility visibility,
       message);
 }
 
+void LiveSockets::tell_user(ModelId model_id, const std::string& user,
+                            const protocol::ServerMessage& message) {
+  tell_if(
+      [&](const LiveSession& session) {
+        return session.model_id() == model_id && session.user() == user;
+      },
+      message);
+}
+
 void LiveSockets::tell_sight(ModelId model_id, Visibility sight,
                              const protocol::ServerMessage& message) {
   tell_if(

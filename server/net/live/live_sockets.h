@@ -27,6 +27,8 @@ class LiveSockets {
   void tell_all(const protocol::ServerMessage& message);
   // Sends to the sessions of the model.
   void tell_model(ModelId model_id, const protocol::ServerMessage& message);
+  // Sends to the sessions of one user at the model.
+  void tell_user(ModelId model_id, const std::string& user, const protocol::ServerMessage& message);
   // Sends to the sessions of the model that can see content with this visibility.
   void tell_model(ModelId model_id, Visibility visibility, const protocol::ServerMessage& message);
   // Sends to the sessions of the model whose most restricted visible content has this visibility.

@@ -1,6 +1,5 @@
 #include "net/live/node_events.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "core/log.h"
@@ -10,7 +9,6 @@
 #include "net/live/comment_events.h"
 #include "store/content/projects.h"
 #include "store/content/tools.h"
-#include "store/tables/records.h"
 #include "store/tables/tables.h"
 
 namespace strata::net {
@@ -59,6 +57,9 @@ Result<void> NodeEvents::receive(const NodeMessage& message) {
       case NodeMessage::Kind::snapshot:
         tell_part(sockets_, message, id, &protocol::SnapshotEvent::snapshot);
         break;
+      case NodeMessage::Kind::selection:
+        tell_part(sockets_, message, id, &protocol::SelectionEvent::selection);
+        break;
       case NodeMessage::Kind::access: break;
     }
   }
@@ -70,12 +71,6 @@ Result<void> NodeEvents::receive_records(const NodeMessage& message, TableId tab
   auto change = store_.tables().change_of(table, message.sequence.value_or(0),
                                           is_shown ? kMaxRecordEvents : 0);
   if (!change) return is_gone(change.error()) ? Result<void>{} : tl::unexpected(change.error());
-  // This node may have deleted some of these records since. Their keys must not be painted again.
-  if (!change->created.empty()) {
-    const auto gone = STRATA_TRY(store_.records().missing(table, change->created));
-    std::erase_if(change->created,
-                  [&](const std::int64_t key) { return std::ranges::count(gone, key) > 0; });
-  }
   tables_.records_changed(*change, message.user);
   return {};
 }

@@ -2,16 +2,20 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <thread>
 
 #include "app/figures/figures.h"
 #include "app/layers/formula_layers.h"
 #include "app/layers/recomputer.h"
+#include "app/layers/survey_statistics.h"
 #include "app/trash_purger.h"
+#include "domain/people/question.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/queries.h"
 #include "store/content/layers.h"
+#include "store/pg/pg.h"
 #include "support/quiet_services.h"
 #include "support/room_fixture.h"
 
@@ -39,12 +43,17 @@ class UseCases : public RoomTest {
 
   // Creates a layer with twice the values of the source.
   Layer make_double(const Layer& source) {
+    return make_computed("twice", source.slug + " * 2", source.resolution, true);
+  }
+
+  Layer make_computed(const std::string& name, const std::string& expression, int resolution,
+                      bool automatic) {
     Layer layer;
     layer.model_id = model_.id;
-    layer.name = layer.slug = "twice";
+    layer.name = layer.slug = name;
     layer.type = ValueType::f32;
-    layer.resolution = source.resolution;
-    auto formula = read_formula(*room(), source.slug + " * 2", true, Visibility::everyone);
+    layer.resolution = resolution;
+    auto formula = read_formula(*room(), expression, automatic, Visibility::everyone);
     EXPECT_TRUE(formula) << formula.error().detail;
     layer.formula = *formula;
     layer.origin = LayerOrigin::expression;
@@ -73,6 +82,144 @@ TEST_F(UseCases, an_automatic_layer_follows_what_is_painted_below_it) {
   recomputer.stop();
   ASSERT_TRUE(send(stroke(source, 11, {{320, 240}}, 20)));
   EXPECT_EQ(highest(twice.slug), 18) << "it goes on after its stop";
+}
+
+TEST_F(UseCases, distances_are_measured_from_what_is_painted_until_it_changes) {
+  const Layer source = make_layer(ValueType::u8, 2048, "values");
+  ASSERT_TRUE(send(stroke(source, 5, {{320, 240}}, 20)));
+  const Layer away = make_computed("away", "distance(values)", source.resolution, false);
+  const auto painted = room()->queries().statistics(source.slug),
+             distances = room()->queries().statistics(away.slug);
+  EXPECT_EQ(distances->min, 0);
+  EXPECT_GT(distances->max, 0);
+  const std::string half = std::to_string(distances->max / 2);
+  const Layer near =
+      make_computed("near", "within(values, " + half + ")", source.resolution, false);
+  const auto buffer = room()->queries().statistics(near.slug);
+  EXPECT_EQ(buffer->max, 1);
+  EXPECT_GT(buffer->texels, painted->texels);
+  EXPECT_LT(buffer->texels, distances->texels);
+  const Layer inside = make_computed("inside", "distance(away > " + half + ") + nearest(values)",
+                                     source.resolution, false);
+  EXPECT_EQ(room()->queries().statistics(inside.slug)->min, 5);
+  EXPECT_FALSE(inside.formula->stale);
+
+  ASSERT_TRUE(send(stroke(source, 5, {{200, 180}}, 20)));
+  for (const Layer& layer : {away, near, inside})
+    EXPECT_TRUE(wait_until([&] { return room()->layers().find(layer.slug)->formula->stale; }))
+        << layer.slug;
+  Progress progress;
+  const auto now = compute_layer(services(), room(), away, {"carl", Role::curator}, progress);
+  ASSERT_TRUE(now) << now.error().detail;
+  EXPECT_FALSE(now->formula->stale);
+}
+
+TEST_F(UseCases, a_distance_from_what_is_not_saved_yet_is_current) {
+  const Layer source = make_layer(ValueType::u8, 2048, "values");
+  ASSERT_TRUE(send(stroke(source, 5, {{320, 240}}, 20)));
+  // This is quick, so it ends before the lock makes the database refuse the stroke.
+  const Layer near = make_computed("near", "within(values, 0.01)", source.resolution, false);
+  const auto before = room()->edits().sequence();
+
+  auto blocker = store::PgConnection::connect(dsn_);
+  ASSERT_TRUE(blocker);
+  // allows reading but not writing
+  ASSERT_TRUE(blocker->script("BEGIN; LOCK TABLE edits IN SHARE ROW EXCLUSIVE MODE"));
+  auto painted = start(stroke(source, 5, {{200, 180}}, 20));
+  const auto is_applied = [&](std::int64_t edits) {
+    return wait_until([&] { return room()->edits().sequence() == before + edits; });
+  };
+  EXPECT_TRUE(is_applied(1));
+  Progress progress;
+  auto computed = std::async(std::launch::async, [&] {
+    return compute_layer(services(), room(), near, {"carl", Role::curator}, progress);
+  });
+  EXPECT_TRUE(is_applied(2));
+  EXPECT_EQ(room()->edits().durable_sequence(), before);
+  EXPECT_TRUE(blocker->script("COMMIT"));
+  EXPECT_TRUE(painted.get());
+  const auto now = computed.get();
+  ASSERT_TRUE(now) << now.error().detail;
+  EXPECT_FALSE(now->formula->stale);
+}
+
+TEST_F(UseCases, a_cancelled_distance_changes_nothing) {
+  const Layer source = make_layer(ValueType::u8, 2048, "values");
+  ASSERT_TRUE(send(stroke(source, 5, {{320, 240}}, 20)));
+  const Layer away = make_computed("away", "distance(values)", source.resolution, false);
+  const auto before = room()->edits().sequence();
+  Progress progress;
+  progress.cancel();
+  const auto stopped = compute_layer(services(), room(), away, {"carl", Role::curator}, progress);
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
+  EXPECT_EQ(room()->edits().sequence(), before);
+}
+
+TEST_F(UseCases, a_layer_is_not_computed_for_a_client_that_has_left) {
+  const Layer source = make_layer(ValueType::u8, 2048, "values");
+  ASSERT_TRUE(send(stroke(source, 5, {{320, 240}}, 20)));
+  const Layer twice = make_double(source),
+              away = make_computed("away", "distance(values)", source.resolution, false);
+  const auto before = room()->edits().sequence();
+  const auto question = std::make_shared<Question>("carl", QuestionLimits{}, nullptr);
+  question->end({ErrorCode::cancelled, "Client left", "", {}});
+  const Question::Scope scope(question);
+  Progress progress;
+  const auto compute = [&](const Layer& layer) {
+    return compute_layer(services(), room(), layer, {"carl", Role::curator}, progress);
+  };
+  EXPECT_THROW(compute(away), QuestionEnded);
+  const auto refused = compute(twice);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().title, "Client left");
+  EXPECT_EQ(room()->edits().sequence(), before);
+}
+
+SurveyedObject surveyed(const std::vector<ModelId>& models) {
+  SurveyedObject object{7, 1, "Bust", 1, {}};
+  for (const ModelId model : models) object.surveys.push_back({model, "bust", "Bust", "2019"});
+  return object;
+}
+
+TEST_F(UseCases, statistics_of_surveys_are_those_of_each_layer) {
+  const Layer layer = make_layer(ValueType::u8, 2048, "values");
+  ASSERT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
+  const auto alone = room()->queries().statistics(layer.slug);
+  const ModelId deleted = 987'654;
+  const auto all = survey_statistics(services(), surveyed({model_.id, deleted, model_.id}),
+                                     {.layer = layer.name, .options = {.pieces = true}});
+  ASSERT_TRUE(all) << all.error().detail;
+  ASSERT_EQ(all->size(), 2u);
+  for (const SurveyStatistics& each : *all) {
+    ASSERT_TRUE(each.layer);
+    EXPECT_EQ(each.layer->statistics.texels, alone->texels);
+    EXPECT_EQ(each.layer->statistics.area_m2, alone->area_m2);
+    EXPECT_EQ(each.layer->statistics.mean, 5);
+    EXPECT_GT(each.layer->statistics.pieces.value_or(0), 0u);
+    EXPECT_EQ(each.layer->sequence, room()->edits().sequence());
+    EXPECT_GT(each.layer->share(), 0);
+    EXPECT_LT(each.layer->share(), 1);
+  }
+}
+
+TEST_F(UseCases, statistics_of_too_many_surveys_are_refused) {
+  const SurveyedObject object = surveyed(std::vector<ModelId>(kMaxSurveysAtOnce + 1, model_.id));
+  const auto refused = survey_statistics(services(), object, {.layer = "values"});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid);
+  EXPECT_EQ(refused.error().field, "from");
+  const auto none = survey_statistics(services(), object, {.layer = "values", .from = "2020"});
+  ASSERT_TRUE(none) << none.error().detail;
+  EXPECT_TRUE(none->empty());
+}
+
+TEST_F(UseCases, statistics_of_surveys_stop_when_the_client_has_left) {
+  const auto question = std::make_shared<Question>("ada", QuestionLimits{}, nullptr);
+  question->end({ErrorCode::cancelled, "Client has left", "", ""});
+  const Question::Scope scope(question);
+  EXPECT_THROW((void)survey_statistics(services(), surveyed({model_.id}), {.layer = "values"}),
+               QuestionEnded);
 }
 
 TEST_F(UseCases, an_edit_that_is_refused_is_counted_and_its_layer_is_taken_back) {

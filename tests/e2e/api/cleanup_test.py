@@ -4,19 +4,10 @@ import urllib.parse
 
 import pytest
 from support.meshes import folded_grid
+from support.readings import dab
 
 M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 DAMAGE = M + "/layers/damage"
-
-
-def dab(server, layer, value, x, y, radius):
-    query = urllib.parse.urlencode({"radius_mm": radius})
-    return server.ok(
-        "POST",
-        f"{M}/layers/{layer}/readings?{query}",
-        f"x,y,z,value\n{x},{y},0,{value}\n",
-        headers={"Content-Type": "text/csv"},
-    ).json()
 
 
 def area_cm2(server, layer, value):
@@ -79,10 +70,10 @@ def server(server):
             "columns": [{"name": "Code", "required": True}],
         },
     )
-    dab(server, "damage", 1, 30, 30, 15)
-    dab(server, "damage", 2, 30, 30, 1)  # a speck on the large area
-    dab(server, "damage", 3, 70, 70, 1)  # a speck on nothing
-    dab(server, "damage", 1, 75, 30, 10)
+    dab(server, f"{M}/layers/damage", 1, 30, 30, 15)
+    dab(server, f"{M}/layers/damage", 2, 30, 30, 1)  # a speck on the large area
+    dab(server, f"{M}/layers/damage", 3, 70, 70, 1)  # a speck on nothing
+    dab(server, f"{M}/layers/damage", 1, 75, 30, 10)
     return server
 
 
@@ -127,14 +118,18 @@ def test_small_regions_can_become_unpainted(server):
 
 
 def test_a_repeated_call_is_one_edit(server):
+    before = history(server, "damage")["total"]
     key = {"Idempotency-Key": "clean once"}
-    body = {"operation": "majority", "radius_mm": 1}
+    body = {"operation": "border", "width_mm": 1, "value": 9}
     first = server.ok("POST", DAMAGE + "/cleanup", body, headers=key).json()["id"]
     again = server.ok("POST", DAMAGE + "/cleanup", body, headers=key)
     assert again.json()["id"] == first and again.headers["Idempotency-Replayed"] == "true"
-    assert server.wait_for_job(first)["state"] == "done"
-    other = server.request("POST", DAMAGE + "/cleanup", {**body, "radius_mm": 2}, headers=key)
-    assert other.status == 422, other
+    job = server.wait_for_job(first)
+    assert job["state"] == "done" and job["cleanup"]["applied"], job
+    other = server.request("POST", DAMAGE + "/cleanup", {**body, "width_mm": 2}, headers=key)
+    assert other.status == 422 and other.json()["field"] == "Idempotency-Key", other
+    assert history(server, "damage")["total"] == before + 1
+    server.ok("POST", DAMAGE + "/undo")
 
 
 def test_a_border_is_painted_into_another_layer(server):
@@ -152,16 +147,47 @@ def test_a_border_is_painted_into_another_layer(server):
     assert value_at(server, "rims", 45, 30) == 7 and value_at(server, "rims", 30, 30) is None
 
 
+def test_narrow_parts_disappear_and_narrow_gaps_close(server):
+    server.ok("POST", M + "/layers", {"name": "Stains", "type": "u8", "resolution": 2048})
+    path = M + "/layers/stains"
+    dab(server, path, 1, 30, 30, 15)
+    dab(server, path, 1, 60, 30, 14)  # a gap of 1 mm to the first one
+    dab(server, path, 1, 30, 70, 1)  # narrower than 3 mm
+    run(server, path + "/cleanup", {"operation": "close", "width_mm": 3})
+    assert value_at(server, "stains", 45.5, 30) == 1
+    assert value_at(server, "stains", 45.5, 42) is None
+    run(server, path + "/cleanup", {"operation": "open", "of": 1, "width_mm": 3})
+    assert value_at(server, "stains", 30, 70) is None
+    assert abs(area_cm2(server, "stains", 1) / (disc(15) + disc(14)) - 1) < 0.03
+    # With several values, the request must name one.
+    dab(server, path, 2, 80, 80, 5)
+    body = {"operation": "open", "width_mm": 3}
+    job = server.wait_for_job(server.ok("POST", path + "/cleanup", body).json()["id"])
+    assert job["state"] == "failed" and job["problem"]["field"] == "of", job
+
+
 def test_what_does_not_fit_is_refused(server):
     for path, body, field in (
         ("damage", {"operation": "sieve"}, "area_cm2"),
         ("damage", {"operation": "majority"}, "radius_mm"),
+        ("damage", {"operation": "open", "of": 1}, "width_mm"),
+        ("damage", {"operation": "close", "of": 1.5, "width_mm": 1}, "of"),
         ("damage", {"operation": "border", "value": 1}, "width_mm"),
         ("damage", {"operation": "border", "width_mm": 1}, "value"),
         ("damage", {"operation": "border", "width_mm": 1, "value": 300}, "value"),
         ("damage", {"operation": "border", "width_mm": 1, "value": 1, "of": 1.5}, "of"),
         ("damage", {"operation": "border", "width_mm": 1, "value": 1, "from": "none"}, "from"),
         ("losses", {"operation": "border", "width_mm": 1, "value": 99}, "value"),
+        # members of other operations
+        ("damage", {"operation": "sieve", "area_cm2": 2, "radius_mm": 5}, "radius_mm"),
+        ("damage", {"operation": "majority", "radius_mm": 1, "area_cm2": 2}, "area_cm2"),
+        (
+            "damage",
+            {"operation": "fill-holes", "area_cm2": 2, "erase_regions": True},
+            "erase_regions",
+        ),
+        ("damage", {"operation": "border", "width_mm": 1, "value": 1, "inside": True}, "inside"),
+        ("damage", {"operation": "border", "width_mm": 1, "value": 1, "erase": True}, "value"),
     ):
         refused = server.post(f"{M}/layers/{path}/cleanup", body)
         assert refused.json()["field"] == field, (body, refused.json())
@@ -178,9 +204,9 @@ def test_roles_and_locks_apply(server):
     annotator = server.add_person("anna", "annotator")
     body = {"operation": "majority", "radius_mm": 1}
     pieces = {"into": "losses", "of": 1}
-    for path, wish in (("/cleanup", body), ("/piece-records", {**pieces, "apply": False})):
-        assert server.request("POST", DAMAGE + path, wish, token=viewer).status == 403
-        run(server, DAMAGE + path, wish, token=annotator)
+    for path, request in (("/cleanup", body), ("/piece-records", {**pieces, "apply": False})):
+        assert server.request("POST", DAMAGE + path, request, token=viewer).status == 403
+        run(server, DAMAGE + path, request, token=annotator)
     server.ok("PATCH", DAMAGE, {"locked": True})
     refused = server.request("POST", DAMAGE + "/cleanup", body, token=annotator)
     assert refused.status == 403 and refused.json()["title"] == "Layer is locked", refused
@@ -190,6 +216,7 @@ def test_roles_and_locks_apply(server):
     server.ok("PATCH", M + "/layers/losses", {"locked": True})
     refused = server.request("POST", DAMAGE + "/piece-records", pieces, token=annotator)
     assert refused.status == 403, refused
+    run(server, DAMAGE + "/piece-records", {**pieces, "apply": False}, token=annotator)
     server.ok("PATCH", M + "/layers/losses", {"locked": False})
     # Layers that an annotator cannot see do not exist for them.
     server.ok("PATCH", M + "/layers/rims", {"visibility": "private"})
@@ -232,6 +259,64 @@ def test_if_a_record_cannot_be_written_nothing_is_painted(server):
     assert server.post(path, {"into": "rims"}).json()["field"] == "into"
     refused = server.post(path, {"into": "losses", "area_column": "none"})
     assert refused.status == 422 and refused.json()["field"] == "area_column", refused
+
+
+def test_after_a_restart_repeated_calls_get_the_first_result(server):
+    """The result comes from the history. Nothing is painted and no record is created again, even if
+    the layer has been locked since."""
+    annotator = server.add_person("arno", "annotator")
+    calls = (
+        ("/piece-records", {"into": "losses", "of": 1, "min_area_cm2": 1}, {"of": 2}),
+        ("/cleanup", {"operation": "border", "of": 1, "width_mm": 1, "value": 9}, {"value": 8}),
+    )
+
+    def send(path, body):
+        key = {"Idempotency-Key": "before the restart"}
+        return server.request("POST", DAMAGE + path, body, headers=key, token=annotator)
+
+    def state():
+        records = server.get("/tables/losses/records").json()["total"]
+        return records, history(server, "damage")["total"], history(server, "losses")["total"]
+
+    first = [server.wait_for_job(send(path, body).json()["id"]) for path, body, _ in calls]
+    assert all(job["cleanup"]["applied"] for job in first), first
+    assert len(first[0]["cleanup"]["keys"]) == 2, first
+    for layer in ("damage", "losses"):
+        server.ok("PATCH", f"{M}/layers/{layer}", {"locked": True})
+    before = state()
+    server.kill()
+    server.start()
+    for (path, body, other), earlier in zip(calls, first):
+        refused = send(path, {**body, **other})
+        assert refused.status == 422 and refused.json()["field"] == "Idempotency-Key", refused
+        again = send(path, body)
+        assert again.status == 202 and again.headers["Idempotency-Replayed"] == "true", again
+        job = server.wait_for_job(again.json()["id"])
+        assert job["state"] == "done" and job["id"] != earlier["id"], job
+        assert job["cleanup"] == earlier["cleanup"], (job, earlier)
+        # the caller also sees the report
+        own = server.request("GET", f"/jobs/{job['id']}", token=annotator).json()
+        assert own["cleanup"] == job["cleanup"], own
+        assert send(path, body).json()["id"] == job["id"]
+    assert state() == before
+
+
+def test_if_the_server_stops_during_a_job_no_record_without_texels_remains(server):
+    def records():
+        found = server.get("/tables/losses/records?limit=1000").json()
+        return {record["key"] for record in found["records"]}
+
+    server.ok("PATCH", M + "/layers/losses", {"locked": False})
+    for _ in range(3):
+        before = records()
+        body = {"into": "losses", "of": 1, "min_area_cm2": 1}
+        server.ok("POST", DAMAGE + "/piece-records", body, expect=(202,))
+        assert server.stop() == 0
+        server.start()
+        new = records() - before
+        keys = server.get(f"{M}/layers/losses/statistics").json()["keys"]
+        assert new <= {key["key"] for key in keys}, (new, keys)
+        assert len(new) in (0, 2), new
 
 
 def test_the_server_ends_with_a_clean_log(server):

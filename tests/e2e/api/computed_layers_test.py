@@ -5,19 +5,10 @@ import urllib.parse
 
 import pytest
 from support.meshes import folded_grid
+from support.readings import dab
 from support.strata_server import wait_for
 
 M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
-
-
-def dab(server, layer, value, x, y, radius):
-    query = urllib.parse.urlencode({"radius_mm": radius})
-    return server.ok(
-        "POST",
-        f"{M}/layers/{layer}/readings?{query}",
-        f"x,y,z,value\n{x},{y},0,{value}\n",
-        headers={"Content-Type": "text/csv"},
-    ).json()
 
 
 def near(a, b, share):
@@ -60,12 +51,12 @@ def server(server):
         {"name": "Hand", "thickness": 2, "period": "1700/.."},
     ):
         server.ok("POST", "/tables/pieces/records", {"values": values})
-    dab(server, "pieces", 1, 30, 30, 10)
-    dab(server, "pieces", 2, 70, 30, 6)
-    dab(server, "pieces", 3, 70, 70, 6)
-    dab(server, "wet", 0.75, 35, 30, 20)
-    dab(server, "wet", 0.25, 25, 22, 20)
-    dab(server, "wet", 0.75, 30, 30, 5)
+    dab(server, f"{M}/layers/pieces", 1, 30, 30, 10)
+    dab(server, f"{M}/layers/pieces", 2, 70, 30, 6)
+    dab(server, f"{M}/layers/pieces", 3, 70, 70, 6)
+    dab(server, f"{M}/layers/wet", 0.75, 35, 30, 20)
+    dab(server, f"{M}/layers/wet", 0.25, 25, 22, 20)
+    dab(server, f"{M}/layers/wet", 0.75, 30, 30, 5)
     return server
 
 
@@ -112,10 +103,11 @@ def test_filters(server):
 
 def test_conditions(server):
     fill_wet(server, 0.25)
-    dab(server, "wet", 0.75, 30, 30, 5)
+    dab(server, f"{M}/layers/wet", 0.75, 30, 30, 5)
     near(select(server, "pieces.thickness > 3"), (100 + 36) * math.pi * 1e-6, 0.03)
     near(select(server, "pieces.state = 'loose' and wet > 0.5"), 25 * math.pi * 1e-6, 0.03)
     near(select(server, "x < 50 and y < 50 and z < 1"), 2500e-6, 0.01)
+    near(select(server, "valid(x) and x < 50"), 5000e-6, 0.01)
     answer = server.post(M + "/select", {"where": "wet > 0 and pieces.thick > 1"})
     assert (
         answer.status == 422 and answer.json()["offset"] == 12 and answer.json()["field"] == "where"
@@ -179,7 +171,7 @@ def test_computing(server):
     assert value(server, "risk", 30, 30)["value"] == 7.5
     assert server.ok("POST", M + "/layers/risk/compute").json()["stale"] is False
     assert value(server, "risk", 30, 30)["value"] == 0.75
-    dab(server, "wet", 0.25, 30, 30, 2)
+    dab(server, f"{M}/layers/wet", 0.25, 30, 30, 2)
     assert {
         each["slug"]: each.get("stale") for each in server.get(M + "/layers").json()["layers"]
     } == {"pieces": None, "wet": None, "risk": True}
@@ -248,6 +240,131 @@ def test_computing(server):
     ), "nothing is left of a layer that cannot be computed"
 
 
+def compute_along(server, name, expression, **more):
+    """Creates a layer with functions along the surface, in a job."""
+    job = compute(server, name, expression, expect=202, **more)
+    done = server.wait_for_job(job["id"])
+    assert done["state"] == "done", done
+    return server.get(f"{M}/layers/{done['layers'][0]}").json()
+
+
+def test_distances_along_the_surface(server):
+    """The sheet is nearly flat, so distances are those of the plane."""
+    server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
+    dab(server, f"{M}/layers/marks", 1, 20, 50, 10)
+    dab(server, f"{M}/layers/marks", 3, 80, 50, 10)
+
+    away = compute_along(server, "Away", "distance(marks = 1)")
+    assert away["inputs"] == ["marks"] and away["stale"] is False, away
+    for x, y in ((50, 50), (20, 95), (90, 90), (70, 20)):
+        near(value(server, "away", x, y)["value"], math.hypot(x - 20, y - 50) - 10, 0.01)
+    assert value(server, "away", 20, 50)["value"] == 0
+
+    # up to a limit, as a buffer, and in the middle of an expression
+    compute_along(server, "Limited", "distance(marks, 15)")
+    near(value(server, "limited", 42, 50)["value"], 12, 0.01)
+    assert not value(server, "limited", 50, 50)["valid"]
+    buffer = compute_along(server, "Buffer", "within(marks = 3, 5)", type="u8")
+    assert buffer["type"] == "u8" and value(server, "buffer", 80, 63)["value"] == 1
+    area = server.get(M + "/layers/buffer/statistics").json()["area_m2"]
+    near(area, 15 * 15 * math.pi * 1e-6, 0.02)
+    compute_along(server, "Sum", "2 * distance(marks = 1) + if(within(marks = 3, 5), 100, 0)")
+    near(value(server, "sum", 50, 50)["value"], 40, 0.01)
+    near(value(server, "sum", 80, 50)["value"], 200, 0.01)
+    compute_along(server, "Nested", "distance(distance(marks = 1) < 5)")
+    near(value(server, "nested", 60, 50)["value"], 25, 0.01)
+    compute_along(server, "Flat", "distance(slope < 45 and x > 90)")
+    near(value(server, "flat", 40, 50)["value"], 50, 0.01)
+
+    # each place has the value of the nearest mark
+    halves = compute_along(server, "Halves", "nearest(marks)", type="u8")
+    assert halves["type"] == "u8"
+    for x, y, mark in ((5, 5, 1), (47, 90, 1), (53, 10, 3), (95, 95, 3)):
+        assert value(server, "halves", x, y) == {"valid": True, "value": mark}
+    total = server.get(M).json()["area_m2"]
+    near(select(server, "halves = 1"), total / 2, 0.02)
+    compute_along(server, "Reach", "nearest(pieces, 3)")
+    assert value(server, "reach", 30, 42)["value"] == 1
+    assert not value(server, "reach", 30, 45)["valid"]
+
+    # after a dab, the layer is stale until it is computed again
+    dab(server, f"{M}/layers/marks", 1, 60, 90, 4)
+    assert server.get(M + "/layers/away").json()["stale"] is True
+    assert server.ok("POST", M + "/layers/away/compute").json()["stale"] is False
+    near(value(server, "away", 60, 70)["value"], 16, 0.01)
+    assert value(server, "away", 60, 90)["value"] == 0
+
+
+def test_neighborhoods(server):
+    """Values within a radius along the surface, on two bands at x = 50."""
+    expression = "case when x < 50 then 10 when y < 80 then 20 end"
+    compute(server, "Bands", expression)
+    compute_along(server, "Mean", "focal_mean(bands, 1.5)")
+    for x, right in ((20, 10), (50, 15), (80, 20)):
+        near(value(server, "mean", x, 50)["value"], right, 0.03)
+    # The part of a disc beyond a line at half of its radius is 0.1955.
+    near(value(server, "mean", 49.25, 50)["value"], 11.955, 0.03)
+    assert not value(server, "mean", 80, 85)["valid"]
+    near(value(server, "mean", 80, 81)["value"], 20, 0.001)
+    compute_along(server, "Relief", "focal_max(bands, 1.5) - focal_min(bands, 1.5)")
+    assert value(server, "relief", 49, 50)["value"] == 10
+    assert value(server, "relief", 47, 50)["value"] == 0
+    compute_along(server, "Variety", "focal_variety(bands, 1.5)", type="u8")
+    assert value(server, "variety", 51, 50)["value"] == 2
+    assert value(server, "variety", 60, 50)["value"] == 1
+    job = compute(server, "Wide", "focal_mean(bands, 50)", expect=202)
+    done = server.wait_for_job(job["id"])
+    assert done["state"] == "failed" and "40 texels" in done["problem"]["detail"], done
+
+
+def test_distances_work_in_computed_layers_only(server):
+    def refused(answer, reason, field):
+        problem = answer.json()
+        assert (answer.status, problem["reason"], problem["field"]) == (422, reason, field), problem
+        return problem
+
+    for answer, field in (
+        (server.post(M + "/select", {"where": "within(pieces, 5)"}), "where"),
+        (server.post(M + "/select", {"where": "distance(pieces.state = 'loose') < 5"}), "where"),
+        (
+            server.post(
+                M + "/layers/wet/edits",
+                {"op": "fill", "mode": "where", "where": "nearest(pieces) = 1", "value": 1},
+            ),
+            "where",
+        ),
+        (
+            server.get(
+                f"{M}/layers/wet/statistics?" + urllib.parse.urlencode({"where": "within(wet, 5)"})
+            ),
+            "where",
+        ),
+        (
+            server.get(
+                "/tables/pieces/records?"
+                + urllib.parse.urlencode({"filter": "distance(thickness > 1) < 5"})
+            ),
+            "filter",
+        ),
+    ):
+        problem = refused(answer, "computed_layers_only", field)
+        assert "computed layer" in problem["detail"] and problem["length"] > 5, problem
+
+    many = " + ".join(f"distance(wet, {number})" for number in range(1, 10))
+    for expression, reason in (
+        ("distance(wte > 0)", "unknown_layer"),
+        ("distance(pieces.thick > 0)", "unknown_column"),
+        ("distance(wet + 1)", "expects_condition"),
+        ("distance(wet, 5 mm)", "unit"),
+        ("distance(wet, dry)", "syntax"),
+        (many, "too_large"),
+    ):
+        answer = server.post(
+            M + "/layers", {"name": "Bad", "expression": expression, "resolution": 2048}
+        )
+        refused(answer, reason, "expression")
+
+
 def test_they_are_computed_anew_by_themselves(server):
     """An automatic layer can depend on another automatic layer."""
     for name in ("risk", "mask"):
@@ -255,7 +372,7 @@ def test_they_are_computed_anew_by_themselves(server):
             server.ok("PATCH", f"{M}/layers/{name}", {"recompute": "automatic"}).json()["recompute"]
             == "automatic"
         )
-    dab(server, "wet", 0.75, 30, 30, 4)
+    dab(server, f"{M}/layers/wet", 0.75, 30, 30, 4)
     wait_for(lambda: value(server, "mask", 30, 30).get("value") == 1, "the layers to follow")
     wait_for(
         lambda: not server.get(M + "/layers/mask").json()["stale"], "the layer to be up to date"
@@ -266,7 +383,7 @@ def test_they_are_computed_anew_by_themselves(server):
     # without its expression the layer is an ordinary layer
     plain = server.ok("PATCH", M + "/layers/mask", {"expression": ""}).json()
     assert "expression" not in plain and value(server, "mask", 30, 30)["value"] == 1
-    dab(server, "mask", 7, 30, 30, 3)
+    dab(server, f"{M}/layers/mask", 7, 30, 30, 3)
     assert value(server, "mask", 30, 30)["value"] == 7
 
     # the error contains the name of the deleted input

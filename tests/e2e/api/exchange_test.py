@@ -11,6 +11,7 @@ import urllib.parse
 import pytest
 from support.meshes import folded_grid
 from support.ply import read_ply
+from support.readings import dab
 from support.strata_server import wait_for
 from support.workbook import Workbook
 
@@ -20,17 +21,6 @@ M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 
 def near(a, b, share):
     assert abs(a - b) <= share * abs(b), (a, b)
-
-
-def dab(server, path, value, x, y, radius):
-    """Paints a disc of `radius` mm around a point, as a reading."""
-    query = urllib.parse.urlencode({"radius_mm": radius})
-    return server.ok(
-        "POST",
-        f"{path}/readings?{query}",
-        f"x,y,z,value\n{x},{y},0,{value}\n",
-        headers={"Content-Type": "text/csv"},
-    ).json()
 
 
 def rows_of(answer, separator=","):

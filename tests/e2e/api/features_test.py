@@ -5,24 +5,14 @@ import os
 import sqlite3
 import struct
 import tempfile
-import urllib.parse
 
 import pytest
 from support.meshes import folded_grid
+from support.readings import dab
 
 M, T = "/models/sheet", "/tables/damage"  # a nearly flat sheet, x and y from 0 to 100 mm
 TEXEL = 100 / 2048  # in mm, at the lowest resolution
 GPKG = "application/geopackage+sqlite3"
-
-
-def dab(server, layer, value, x, y, radius):
-    query = urllib.parse.urlencode({"radius_mm": radius})
-    server.ok(
-        "POST",
-        f"{M}/layers/{layer}/readings?{query}",
-        f"x,y,z,value\n{x},{y},0,{value}\n",
-        headers={"Content-Type": "text/csv"},
-    )
 
 
 def make(server):
@@ -50,11 +40,11 @@ def make(server):
             },
         },
     )
-    dab(server, "units", 1, 40, 40, 30)
-    dab(server, "units", 2, 40, 40, 10)  # a hole in the first disc
-    dab(server, "units", 2, 85, 85, 8)
-    dab(server, "wet", 3, 20, 20, 5)
-    dab(server, "wet", 7, 60, 60, 5)
+    dab(server, f"{M}/layers/units", 1, 40, 40, 30)
+    dab(server, f"{M}/layers/units", 2, 40, 40, 10)  # a hole in the first disc
+    dab(server, f"{M}/layers/units", 2, 85, 85, 8)
+    dab(server, f"{M}/layers/wet", 3, 20, 20, 5)
+    dab(server, f"{M}/layers/wet", 7, 60, 60, 5)
     server.ok(
         "POST",
         "/projects/default/tables",
@@ -110,7 +100,7 @@ def make(server):
         },
     )
     server.ok("POST", T + "/records", {"values": {"code": "Sample", "sample": place((80, 20, 0))}})
-    dab(server, "damage", 1, 30, 70, 10)
+    dab(server, f"{M}/layers/damage", 1, 30, 70, 10)
 
 
 def ring_area(ring):

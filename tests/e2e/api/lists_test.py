@@ -249,6 +249,7 @@ def lists_that_others_write(server, camera):
         (M + "/views", "views"): views("views", {"camera": camera}),
         (M + "/tours", "tours"): views("tours", tour),
         (M + "/snapshots", "snapshots"): views("snapshots", {}),
+        (M + "/selections", "selections"): views("selections", {"within": {"where": "true"}}),
         (M + "/layers", "layers"): (
             made(M + "/layers", lambda n: {"name": names(n), "type": "u8"}),
             delete(M + "/layers"),

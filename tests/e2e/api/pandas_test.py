@@ -326,6 +326,47 @@ def test_terms(server, reader):
     ), frame
 
 
+def test_surveys(server, reader):
+    for name, date in (("Then", "2019"), ("Now", "2025-05-01")):
+        model = server.import_model(
+            folded_grid(fold=0.001),
+            "sheet.ply",
+            name=name,
+            unit="mm",
+            resolution=2048,
+            object="Sheet",
+            survey_date=date,
+        )
+        layers = f"/models/{model['slug']}/layers"
+        for layer, kind in (("Cracks", "u8"), ("Wetness", "f32")):
+            server.ok("POST", layers, {"name": layer, "type": kind, "resolution": 2048})
+        server.ok(
+            "POST",
+            f"{layers}/cracks/edits",
+            {"op": "fill", "mode": "where", "where": "x < 40", "value": 3},
+        )
+    (sheet,) = [
+        each
+        for each in server.get("/projects/default/objects").json()["objects"]
+        if each["name"] == "Sheet"
+    ]
+    path = f"/projects/default/objects/{sheet['id']}/statistics"
+    frame = reader.csv("object_statistics", path, layer="Cracks", f="csv")
+    assert frame["model"].tolist() == ["then", "now"], frame
+    areas = [name for name in frame.columns if name.endswith("area_m2")]
+    assert areas and all((frame[name] > 0).all() for name in areas), frame
+    same(frame, reader.excel("object_statistics", path, layer="Cracks", f="xlsx"))
+    empty = reader.csv("object_statistics", path, layer="Wetness", f="csv")
+    assert empty["texels"].tolist() == [0, 0] and empty["mean"].isna().all(), empty
+
+    changes = "/models/now/layers/cracks/changes?f=csv&separator=comma"
+    started = server.ok("POST", changes, {"since": "then", "tolerance_mm": 1}, expect=(202,))
+    job = server.wait_for_job(started.json()["id"])
+    table = reader.csv("get_job_file", f"/jobs/{job['id']}/file")
+    assert table.iloc[:, 0].tolist() == ["3", "not painted", "no counterpart", "total"], table
+    assert table["3"].tolist()[0] > 0 and set(list(kinds(table).values())[1:]) <= {"f", "i"}, table
+
+
 def test_every_csv_of_the_contract_was_read(server, reader):
     csv = {
         operation["operationId"]

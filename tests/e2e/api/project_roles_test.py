@@ -91,14 +91,23 @@ def test_ladder(server, guest, villa, forum):
         ).json()["id"]
     )
     assert imported["state"] == "done", imported
-    # layers cannot be transferred from a model of another project
-    refused = [
-        guest.request("POST", "/models/second/transfer", {"from": source})
-        for source in (forum["model"]["slug"], "ghost")
-    ]
-    assert [answer.status for answer in refused] == [422, 422] and refused[0].json()[
-        "detail"
-    ].replace(forum["model"]["slug"], "ghost") == refused[1].json()["detail"], refused
+    # a model of another project is refused like one that does not exist
+    other = forum["model"]["slug"]
+    for path, body in (
+        ("/transfer", lambda name: {"from": name}),
+        (
+            "/layers",
+            lambda name: {"name": "d", "compute": {"kind": "model_distance", "model": name}},
+        ),
+        ("/layers", lambda name: {"name": "c", "compute": {"kind": "change", "model": name}}),
+    ):
+        refused = [
+            guest.request("POST", "/models/second" + path, body(name)) for name in (other, "ghost")
+        ]
+        assert [answer.status for answer in refused] == [422, 422], refused
+        hidden, absent = (answer.json() for answer in refused)
+        assert hidden["detail"].replace(other, "ghost") == absent["detail"], (hidden, absent)
+        assert hidden["field"] == absent["field"], (hidden, absent)
 
 
 def test_nothing_is_seen_of_another_project(server, guest, forum):

@@ -6,6 +6,7 @@ import urllib.parse
 import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
+from support.readings import dab
 
 M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 
@@ -17,17 +18,6 @@ def layer(server, name, kind="u8"):
             "slug"
         ]
     )
-
-
-def dab(server, path, value, x, y, radius):
-    """Paints a disc of `radius` mm around a point, as a reading."""
-    query = urllib.parse.urlencode({"radius_mm": radius})
-    return server.ok(
-        "POST",
-        f"{path}/readings?{query}",
-        f"x,y,z,value\n{x},{y},0,{value}\n",
-        headers={"Content-Type": "text/csv"},
-    ).json()
 
 
 def near(a, b, share):
@@ -175,6 +165,7 @@ def test_cross_table(server, marks):
     near(area[1][1], 25 * math.pi * 1e-6, 0.03)
     near(sum(area[0]), 400 * math.pi * 1e-6, 0.02)
     assert area[0][1] == area[2][2] == 0 and area[2][1] > 0, table
+    assert "agreement" not in table, "the layers contain measurements"
     csv = server.ok(
         "POST",
         M + "/cross-table",
@@ -189,6 +180,76 @@ def test_cross_table(server, marks):
         server.post(M + "/cross-table", {"rows": "units", "columns": "depth"}).json()["field"]
         == "columns"
     )
+
+
+def observer(server, name, labels):
+    path = layer(server, name)
+    points = [
+        {"at": key, "color": "#d55e00", **({"label": label} if label else {})}
+        for key, label in labels.items()
+    ]
+    server.ok("PATCH", path, {"palette": {"mode": "categorical", "points": points}})
+    return path
+
+
+def agreement_of(table, neither):
+    """The reference: the formula of Cohen (1960), with areas in place of counts."""
+    both, first, second = {None: neither}, {None: neither}, {None: neither}
+    for row, areas in zip(table["rows"], table["area_m2"]):
+        for column, area in zip(table["columns"], areas):
+            first[row] = first.get(row, 0) + area
+            second[column] = second.get(column, 0) + area
+            if row == column:
+                both[row] = both.get(row, 0) + area
+    everything = sum(first.values())
+    observed = sum(both.values()) / everything
+    expected = sum(first[key] * second.get(key, 0) for key in first) / everything**2
+    return observed, expected, (observed - expected) / (1 - expected)
+
+
+def test_agreement_of_two_observers(server):
+    anna = observer(server, "Anna", {1: "Crack", 2: "Loss"})
+    bo = observer(server, "Bo", {1: "crack", 2: "", 3: "Salt"})
+    dab(server, anna, 1, 30, 30, 20)
+    dab(server, bo, 1, 40, 30, 20)
+    dab(server, bo, 3, 80, 80, 10)
+    both = {"rows": "anna", "columns": "bo"}
+    table = server.ok("POST", M + "/cross-table", both).json()
+    found = table["agreement"]
+    surface = server.get(M).json()["area_m2"]
+    near(found["area_m2"], surface, 0.01)
+    painted = sum(map(sum, table["area_m2"]))
+    observed, expected, kappa = agreement_of(table, found["area_m2"] - painted)
+    assert abs(found["observed"] - observed) < 1e-9, found
+    assert abs(found["expected"] - expected) < 1e-9, found
+    assert abs(found["kappa"] - kappa) < 1e-9 and 0 < kappa < 1, found
+    cracks, salt, unpainted = found["classes"]
+    assert [each["key"] for each in found["classes"]] == [1, 3, None], found
+    # two discs of 20 mm whose centers are 10 mm apart
+    lens = 2 * 400 * math.acos(10 / 40) - 10 / 2 * math.sqrt(4 * 400 - 100)
+    near(cracks["area_both_m2"], lens * 1e-6, 0.02)
+    near(cracks["iou"], lens / (2 * 400 * math.pi - lens), 0.03)
+    near(cracks["f1"], lens / (400 * math.pi), 0.03)
+    assert salt["iou"] == salt["f1"] == salt["area_first_m2"] == 0, salt
+    near(salt["area_second_m2"], 100 * math.pi * 1e-6, 0.03)
+    near(unpainted["area_first_m2"], surface - 400 * math.pi * 1e-6, 0.01)
+    near(found["observed_painted"], cracks["area_both_m2"] / painted, 1e-9)
+
+    swapped = server.ok("POST", M + "/cross-table", {"rows": "bo", "columns": "anna"}).json()
+    assert abs(swapped["agreement"]["kappa"] - kappa) < 1e-9, swapped
+    same = server.ok("POST", M + "/cross-table", {"rows": "bo", "columns": "bo"}).json()
+    assert same["agreement"]["kappa"] == same["agreement"]["observed"] == 1, same
+    # in the middle of both discs, both layers have only cracks
+    middle = {"within": {"at": {"point": [35, 30, 0]}, "radius_mm": 5}}
+    one_class = server.ok("POST", M + "/cross-table", {**both, **middle}).json()["agreement"]
+    assert (one_class["observed"], one_class["kappa"]) == (1, None), one_class
+    csv = server.ok("POST", M + "/cross-table", both, headers={"Accept": "text/csv"})
+    assert csv.body.decode().count("\r\n") == 1 + len(table["rows"]), "only the areas"
+
+    renamed = {1: "Loss", 2: "Crack"}
+    points = [{"at": key, "color": "#d55e00", "label": name} for key, name in renamed.items()]
+    server.ok("PATCH", bo, {"palette": {"mode": "categorical", "points": points}})
+    assert "agreement" not in server.ok("POST", M + "/cross-table", both).json()
 
 
 def test_profile(server, marks):

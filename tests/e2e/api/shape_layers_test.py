@@ -8,6 +8,18 @@ from support.meshes import bumpy_ball, folded_grid
 from support.strata_server import wait_for
 
 BALL, SHEET = "/models/ball", "/models/sheet"
+RECIPE_MEMBERS = (
+    "radius_mm",
+    "distance_mm",
+    "normal_scale_mm",
+    "projection_scale_mm",
+    "registration_mm",
+    "rays",
+    "absolute",
+    "model",
+    "property",
+    "source",
+)
 
 
 def run(server, path, body, state="done", **more):
@@ -28,11 +40,7 @@ def ended(server, job):
 
 def compute(server, at, kind, **more):
     """Creates a layer from a recipe. Returns the layer and its statistics."""
-    compute_members = {
-        key: more.pop(key)
-        for key in ("radius_mm", "distance_mm", "rays", "absolute", "model", "property", "source")
-        if key in more
-    }
+    compute_members = {key: more.pop(key) for key in RECIPE_MEMBERS if key in more}
     job = run(
         server,
         at + "/layers",
@@ -72,6 +80,25 @@ def test_refusals(server):
         (layer(kind="slope", absolute=True), 422, "compute.absolute"),
         (layer(kind="model_distance"), 422, "compute.model"),
         (layer(kind="model_distance", model="nothing"), 422, "compute.model"),
+        (layer(kind="change"), 422, "compute.model"),
+        (layer(kind="significant_change", model="nothing"), 422, "compute.model"),
+        (
+            layer(kind="change", model="larger-ball", projection_scale_mm=1e-6),
+            422,
+            "compute.projection_scale_mm",
+        ),
+        (
+            layer(kind="change", model="larger-ball", normal_scale_mm=1e9),
+            422,
+            "compute.normal_scale_mm",
+        ),
+        (layer(kind="change", model="larger-ball", distance_mm=1e9), 422, "compute.distance_mm"),
+        (
+            layer(kind="change", model="larger-ball", registration_mm=-1),
+            422,
+            "compute.registration_mm",
+        ),
+        (layer(kind="slope", registration_mm=1), 422, "compute.registration_mm"),
         (layer(kind="height", sql="x"), 422, "compute.sql"),
         (layer(kind="vertex_property"), 422, "compute.property"),
         (
@@ -88,6 +115,7 @@ def test_refusals(server):
     for body, field in [
         (layer(kind="boundary_distance"), "compute.kind"),
         (layer(kind="model_distance", model="ball"), "compute.model"),
+        (layer(kind="change", model="ball"), "compute.model"),
         (layer(kind="vertex_property", property="quality"), "compute.property"),
         ({"name": "wrong", "type": "u8", "compute": {"kind": "height", "absolute": True}}, "type"),
     ]:
@@ -201,6 +229,43 @@ def test_distance(server):
         and edit["recipe"]["distance_mm"] > 0
     ), edit
     print("distance: ok", flush=True)
+
+
+def test_change(server):
+    """The other ball has the same waves, but its radius is 1 mm larger."""
+    apart, statistics = compute(server, BALL, "change", model="larger-ball")
+    assert apart["unit"] == "mm" and abs(statistics["mean"] + 1) < 0.1, statistics
+    (edit,) = server.get(f"{BALL}/layers/{apart['id']}/edits").json()["edits"]
+    recipe = edit["recipe"]
+    assert recipe["normal_scale_mm"] > recipe["projection_scale_mm"] > 1, recipe
+    assert recipe["registration_mm"] == 0 and recipe["distance_mm"] > 1, recipe
+    assert "M3C2" in apart["description"] and "Larger ball" in apart["description"], apart
+    scales = {"normal_scale_mm": 12, "projection_scale_mm": 6, "distance_mm": 5}
+    level, statistics = compute(
+        server, BALL, "level_of_detection", model="larger-ball", registration_mm=0.25, **scales
+    )
+    assert level["unit"] == "mm" and 1.96 * 0.25 < statistics["mean"] < 1, statistics
+
+    def classes(registration_mm):
+        layer, statistics = compute(
+            server,
+            BALL,
+            "significant_change",
+            model="larger-ball",
+            name=f"registration {registration_mm}",
+            registration_mm=registration_mm,
+            **scales,
+        )
+        assert (layer["type"], layer["unit"], layer["palette"]["mode"]) == (
+            "u8",
+            "",
+            "categorical",
+        ), layer
+        return {key["key"]: key["area_m2"] / statistics["area_m2"] for key in statistics["keys"]}
+
+    assert classes(0.2).get(2, 0) > 0.9, "material was removed"
+    assert set(classes(1)) == {0}, "the alignment can explain the change"
+    print("change: ok", flush=True)
 
 
 def test_undo(server):

@@ -18,6 +18,7 @@ OF_PATH = {
     "view": "west",
     "tour": "round",
     "snapshot": "first",
+    "selection": "sunny",
     "look": "plain",
     "tool": "left",
     "user": "ada",
@@ -27,6 +28,7 @@ OF_PATH = {
 OF_QUERY = {
     "/models/{model}/position": "?coords=POINT(30 30 0)",
     "/tables/{table}/columns/{column}/classes": "?method=unique",
+    "/projects/{project}/objects/{object}/statistics": "?layer=finds",
 }
 LISTS_OF_TERMS = "/tables/{table}/terms"
 # This read needs a kiosk's cookie, and the time of the last use changes with each request.
@@ -87,6 +89,11 @@ def make_site(server):
         },
     )
     server.ok("POST", M + "/snapshots", {"name": "First"})
+    server.ok(
+        "POST",
+        M + "/selections",
+        {"name": "Sunny", "audience": "everyone", "within": {"where": "true"}},
+    )
     picture = server.ok("POST", M + "/tours/round/files?name=west.png", plain(64)).json()["id"]
     comment = server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()[
         "id"
@@ -94,6 +101,7 @@ def make_site(server):
     server.ok("POST", f"/comments/{comment}/replies", {"text": "I did."})
     group = server.ok("POST", "/groups", {"name": "Students", "members": []}).json()["id"]
     thing = server.ok("POST", "/projects/default/objects", {"name": "Sheet"}).json()["id"]
+    server.ok("PATCH", M, {"object": thing, "survey_date": "2019"})
     job = server.ok(
         "POST", M + "/figures", {"format": "png", "dpi": 100}, headers={"Prefer": "respond-async"}
     ).json()["id"]
@@ -215,6 +223,7 @@ def test_changes(server, known, camera):
         for part in ("statistics", "quantities", "texels.csv", "texels.npy", "records", "edits")
     }
     texels |= {M + "/vertices.ply", M + "/views/west/picture", T + "/areas", T + "/quantities"}
+    texels.add(f"/projects/default/objects/{OF_PATH['object']}/statistics?layer=finds")
     fill(server, 2)
     anew = check_change(server, known, "painting", texels)
     assert (

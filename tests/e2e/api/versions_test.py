@@ -15,6 +15,7 @@ OF_PATH = {
     "view": "west",
     "tour": "round",
     "snapshot": "first",
+    "selection": "sunny",
     "look": "plain",
 }
 
@@ -47,6 +48,11 @@ def make_site(server):
         },
     )
     server.ok("POST", M + "/snapshots", {"name": "First"})
+    server.ok(
+        "POST",
+        M + "/selections",
+        {"name": "Sunny", "audience": "everyone", "within": {"where": "true"}},
+    )
     OF_PATH["object"] = str(server.ok("POST", P + "/objects", {"name": "Sheet"}).json()["id"])
     OF_PATH["comment"] = str(
         server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()["id"]
@@ -67,7 +73,7 @@ def versioned_changes(server):
                 asked = asked.replace("{" + name + "}", value)
             assert "{" not in asked, asked
             found.append((method.upper(), asked))
-    assert len(found) == 26, found
+    assert len(found) == 28, found
     return found
 
 
@@ -88,6 +94,7 @@ BODIES = {
     M + "/views/west": {"name": "West"},
     M + "/tours/round": {"name": "Round"},
     M + "/snapshots/first": {"name": "First"},
+    M + "/selections/sunny": {"name": "Sunny"},
 }
 
 

@@ -1,25 +1,15 @@
 """The mesh with the colors of its layers. Each vertex has the color of an unlit frame at its
 position."""
-import urllib.parse
 
 import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.pictures import pixels, png
 from support.ply import read_ply
+from support.readings import dab
 
 M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 SIDE = 800
-
-
-def dab(server, layer, value, x, y, radius):
-    query = urllib.parse.urlencode({"radius_mm": radius})
-    server.ok(
-        "POST",
-        f"{M}/layers/{layer}/readings?{query}",
-        f"x,y,z,value\n{x},{y},0,{value}\n",
-        headers={"Content-Type": "text/csv"},
-    )
 
 
 def times(matrix, vector):
@@ -105,11 +95,11 @@ def make_layers(server):
             "palette": by_state,
         },
     )
-    dab(server, "wet", 7.5, 40, 40, 30)
-    dab(server, "units", 1, 60, 40, 25)
-    dab(server, "units", 2, 40, 70, 25)
-    dab(server, "pieces", 1, 20, 20, 12)
-    dab(server, "pieces", 2, 60, 60, 12)
+    dab(server, f"{M}/layers/wet", 7.5, 40, 40, 30)
+    dab(server, f"{M}/layers/units", 1, 60, 40, 25)
+    dab(server, f"{M}/layers/units", 2, 40, 70, 25)
+    dab(server, f"{M}/layers/pieces", 1, 20, 20, 12)
+    dab(server, f"{M}/layers/pieces", 2, 60, 60, 12)
 
 
 @pytest.fixture(scope="module")

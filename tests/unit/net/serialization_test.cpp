@@ -387,5 +387,21 @@ TEST(Wire, a_job_tells_what_went_wrong) {
   EXPECT_FALSE(json.contains("model"));
 }
 
+TEST(Wire, the_kind_of_a_job_decides_the_member_of_its_report) {
+  jobs::JobStatus job;
+  job.id = 3;
+  job.state = jobs::JobState::done;
+  job.result.emplace(ModelId(7));
+  job.result->report = {{"operation", "sieve"}};
+  job.kind = jobs::JobKind::layers;
+  EXPECT_TRUE(to_json(job).contains("report"));
+  job.kind = jobs::JobKind::regions;
+  EXPECT_EQ(to_json(job)["cleanup"]["operation"], "sieve");
+  EXPECT_FALSE(to_json(job).contains("report"));
+  job.kind = jobs::JobKind::changes;
+  EXPECT_EQ(to_json(job)["changes"]["operation"], "sieve");
+  EXPECT_FALSE(to_json(job).contains("report"));
+}
+
 }  // namespace
 }  // namespace strata::net

@@ -18,6 +18,9 @@ jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& body) {
   recipe.kind = *jobs::parse_shape_kind(name(body.kind));  // the schema uses the same names
   recipe.radius_mm = body.radius_mm;
   recipe.distance_mm = body.distance_mm;
+  recipe.normal_scale_mm = body.normal_scale_mm;
+  recipe.projection_scale_mm = body.projection_scale_mm;
+  recipe.registration_mm = body.registration_mm;
   recipe.rays = body.rays;
   recipe.absolute = body.absolute;
   recipe.model = body.model.value_or("");
@@ -31,8 +34,8 @@ jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& body) {
 Result<Response> create_shape_layer(const RouteContext& context, JobIdempotency& book,
                                     const Request& request, const std::shared_ptr<room::Room>& room,
                                     const protocol::LayerCreate& body, Layer layer) {
-  auto recipe =
-      STRATA_TRY(app::check_recipe(context.store, recipe_of(*body.compute), room->model()));
+  auto recipe = STRATA_TRY(app::check_recipe(context.store, recipe_of(*body.compute), room->model(),
+                                             request.principal->roles));
   return start_layer_job(
       context, book, request, room,
       [&store = context.store, room, layer = std::move(layer), recipe = std::move(recipe),

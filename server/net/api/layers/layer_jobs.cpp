@@ -63,7 +63,8 @@ Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& b
   result.layers = stored.at("layers").get<std::vector<LayerId>>();
   result.report = stored.at("report");
   const auto model = STRATA_TRY(stored_model(context, request));
-  auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
+  auto job = STRATA_TRY(
+      book.finished(request, model.project_id, std::move(result), jobs::JobKind::layers));
   return job_response(context, job);
 }
 

@@ -1,4 +1,5 @@
 // Operations on the regions of a layer, as jobs that end with one edit.
+#include <optional>
 #include <utility>
 
 #include "app/layers/cleanup.h"
@@ -27,6 +28,35 @@ using Operation = app::Cleanup::Operation;
 Result<double> required(const std::optional<double>& member, const std::string& name) {
   if (member) return *member;
   return fail(ErrorCode::invalid, "Value missing", "This operation requires `" + name + "`.", name);
+}
+
+// Refuses members that have no effect.
+Result<void> check_members(const protocol::Cleanup& body) {
+  const bool border = body.operation == protocol::CleanupOperation::border,
+             sieve = body.operation == protocol::CleanupOperation::sieve,
+             fill = body.operation == protocol::CleanupOperation::fill_holes,
+             majority = body.operation == protocol::CleanupOperation::majority,
+             narrow = body.operation == protocol::CleanupOperation::open ||
+                      body.operation == protocol::CleanupOperation::close;
+  const struct {
+    const char* name;
+    bool is_set, is_allowed;
+  } members[] = {{"area_cm2", body.area_cm2.has_value(), sieve || fill},
+                 {"erase_regions", body.erase_regions, sieve},
+                 {"radius_mm", body.radius_mm.has_value(), majority},
+                 {"width_mm", body.width_mm.has_value(), border || narrow},
+                 {"from", body.from.has_value(), border},
+                 {"of", body.of.has_value(), border || narrow},
+                 {"inside", body.inside, border && body.of},
+                 {"erase", body.erase, border},
+                 {"value", body.value.has_value(), border && !body.erase}};
+  for (const auto& member : members)
+    if (member.is_set && !member.is_allowed)
+      return fail(ErrorCode::invalid, "Member without effect",
+                  "`" + std::string(member.name) +
+                      "` has no effect with the other members. Remove it, or correct them.",
+                  member.name);
+  return {};
 }
 
 Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::string& field) {
@@ -68,11 +98,12 @@ Result<void> read_border(const RouteContext& context, const room::Room& room, co
 
 Result<app::Cleanup> cleanup_of(const RouteContext& context, const room::Room& room,
                                 const Layer& layer, const protocol::Cleanup& body) {
+  STRATA_TRY(check_members(body));
   app::Cleanup cleanup;
   static_assert(static_cast<int>(protocol::CleanupOperation::sieve) ==
                 static_cast<int>(Operation::sieve));
-  static_assert(static_cast<int>(protocol::CleanupOperation::border) ==
-                static_cast<int>(Operation::border));
+  static_assert(static_cast<int>(protocol::CleanupOperation::close) ==
+                static_cast<int>(Operation::close));
   cleanup.operation = static_cast<Operation>(body.operation);
   switch (cleanup.operation) {
     case Operation::sieve:
@@ -82,6 +113,14 @@ Result<app::Cleanup> cleanup_of(const RouteContext& context, const room::Room& r
       break;
     case Operation::majority:
       cleanup.radius_m = STRATA_TRY(required(body.radius_mm, "radius_mm")) / 1000;
+      break;
+    case Operation::open:
+    case Operation::close:
+      cleanup.width_m = STRATA_TRY(required(body.width_mm, "width_mm")) / 1000;
+      if (body.of) {
+        const auto bits = STRATA_TRY(bits_of(layer, *body.of, "of"));
+        cleanup.of_bits = bits;
+      }
       break;
     case Operation::border: STRATA_TRY(read_border(context, room, layer, body, cleanup)); break;
   }
@@ -101,7 +140,7 @@ Result<app::PieceRecords> pieces_of(const RouteContext& context, const room::Roo
   if (!into.table)
     return fail(ErrorCode::invalid, "No table",
                 into.name + " is not a layer of records. Choose a layer of records.", "into");
-  STRATA_TRY(room::check_not_locked(into, role));
+  if (body.apply) STRATA_TRY(room::check_not_locked(into, role));
   app::PieceRecords pieces;
   pieces.into = into.id;
   pieces.min_area_m2 = body.min_area_cm2 / 1e4;
@@ -123,48 +162,68 @@ Result<app::PieceRecords> pieces_of(const RouteContext& context, const room::Roo
   return pieces;
 }
 
-nlohmann::json report_of(std::string_view operation, const app::CleanupResult& result) {
-  nlohmann::json report{{"operation", operation},
-                        {"applied", result.applied},
-                        {"regions", result.regions},
-                        {"texels", result.texels},
-                        {"area_m2", result.area_m2}};
-  if (!result.applied) return report;
-  report["skipped_texels"] = result.skipped_texels;
-  report["sequence"] = result.sequence;
-  if (result.provisional) report["provisional"] = true;
-  if (!result.keys.empty()) report["keys"] = result.keys;
-  return report;
+jobs::JobResult job_result(ModelId model, std::string_view operation,
+                           const app::CleanupResult& done) {
+  jobs::JobResult result(model);
+  nlohmann::json& report = result.report;
+  report = {{"operation", operation},
+            {"applied", done.applied},
+            {"regions", done.regions},
+            {"texels", done.texels},
+            {"area_m2", done.area_m2}};
+  if (done.sequence == 0) return result;
+  report["skipped_texels"] = done.skipped_texels;
+  report["sequence"] = done.sequence;
+  if (done.provisional) report["provisional"] = true;
+  if (!done.keys.empty()) report["keys"] = done.keys;
+  if (!done.unpainted_keys.empty()) report["unpainted_keys"] = done.unpainted_keys;
+  return result;
+}
+
+// With an Idempotency-Key, a repeated call finds the job of the first call. If the server no longer
+// lists this job, for example after a restart, the journal answers the call.
+Result<std::optional<Response>> repeat_job(const RouteContext& context, JobIdempotency& book,
+                                           const Request& request, const Model& model,
+                                           std::string_view operation,
+                                           const app::CleanupEdit& edit) {
+  auto job = STRATA_TRY(book.find(request));
+  if (!job && !request.header("idempotency-key").empty()) {
+    const auto saved = STRATA_TRY(app::find_saved(context, model.id, edit));
+    if (saved) {
+      const auto finished = STRATA_TRY(book.finished(request, model.project_id,
+                                                     job_result(model.id, operation, *saved),
+                                                     jobs::JobKind::regions));
+      job = finished;
+    }
+  }
+  if (!job) return std::nullopt;
+  return std::move(job_response(context, *job).with("Idempotency-Replayed", "true"));
 }
 
 using Run = std::function<Result<app::CleanupResult>(Progress&)>;
 
-// Returns 202 with a job of the caller. With an Idempotency-Key, a repeated call finds the job. If
-// the server has restarted since, the job runs again, but its edit is not applied twice.
+// Returns 202 with a job of the caller.
 Result<Response> start_job(const RouteContext& context, JobIdempotency& book,
                            const Request& request, const Model& model, std::string operation,
                            Run run) {
-  const auto known = STRATA_TRY(book.find(request));
-  if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   const auto job = STRATA_TRY(context.jobs.add(
       model.project_id,
       [model_id = model.id, operation = std::move(operation),
        run = std::move(run)](Progress& progress) -> Result<jobs::JobResult> {
         const auto done = STRATA_TRY(run(progress));
-        jobs::JobResult result(model_id);
-        result.report = report_of(operation, done);
-        return result;
+        return job_result(model_id, operation, done);
       },
-      request.user(), jobs::JobKind::layers));
+      request.user(), jobs::JobKind::regions));
   book.started(request, job);
   return job_response(context, job);
 }
 
-app::CleanupEdit edit_of(const Request& request, const Layer& layer, bool apply,
-                         const nlohmann::json& body) {
+// `route` separates the ids of calls with the same Idempotency-Key.
+app::CleanupEdit edit_of(const Request& request, const Layer& layer, std::string_view route,
+                         bool apply, const nlohmann::json& body) {
   nlohmann::json record{{"op", "cleanup"}};
   record.update(body);
-  return {apply, edit_id(request, layer, "cleanup"), request.author(), std::move(record)};
+  return {apply, edit_id(request, layer, route), request.author(), std::move(record)};
 }
 
 Result<Response> start_cleanup(const RouteContext& context, JobIdempotency& book,
@@ -172,10 +231,13 @@ Result<Response> start_cleanup(const RouteContext& context, JobIdempotency& book
   const auto body = STRATA_TRY(body_of<protocol::Cleanup>(request));
   const auto room = STRATA_TRY(open_room(context, request));
   const auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
+  const std::string operation(name(body.operation));
+  auto edit = edit_of(request, layer, "cleanup", body.apply, protocol::to_json(body));
+  auto repeated = STRATA_TRY(repeat_job(context, book, request, room->model(), operation, edit));
+  if (repeated) return std::move(*repeated);
   const auto cleanup = STRATA_TRY(cleanup_of(context, *room, layer, body));
-  auto edit = edit_of(request, layer, body.apply, protocol::to_json(body));
   if (body.apply) STRATA_TRY(room::check_not_locked(layer, edit.author.role));
-  return start_job(context, book, request, room->model(), std::string(name(body.operation)),
+  return start_job(context, book, request, room->model(), operation,
                    [&services = static_cast<const app::Services&>(context), room, layer, cleanup,
                     edit = std::move(edit)](Progress& progress) {
                      return app::clean_up(services, *room, layer, cleanup, edit, progress);
@@ -187,10 +249,12 @@ Result<Response> start_piece_records(const RouteContext& context, JobIdempotency
   const auto body = STRATA_TRY(body_of<protocol::PieceRecords>(request));
   const auto room = STRATA_TRY(open_room(context, request));
   const auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
-  const auto pieces = STRATA_TRY(pieces_of(context, *room, layer, body, request.role()));
-  auto edit = edit_of(request, layer, body.apply, protocol::to_json(body));
+  auto edit = edit_of(request, layer, "pieces", body.apply, protocol::to_json(body));
   edit.record["operation"] = "pieces";
   edit.record["from"] = to_string(layer.id);
+  auto repeated = STRATA_TRY(repeat_job(context, book, request, room->model(), "pieces", edit));
+  if (repeated) return std::move(*repeated);
+  const auto pieces = STRATA_TRY(pieces_of(context, *room, layer, body, request.role()));
   return start_job(context, book, request, room->model(), "pieces",
                    [&services = static_cast<const app::Services&>(context), room, layer, pieces,
                     edit = std::move(edit)](Progress& progress) {
@@ -211,7 +275,8 @@ void add_cleanup_routes(Router& router, const RouteContext& context) {
                 }),
                 .role = Role::annotator,
                 .body = BodyKind::memory,
-                .max_body = context.options.max_json_bytes});
+                .max_body = context.options.max_json_bytes,
+                .keeps_answer = true});
   };
   add("/cleanup", start_cleanup);
   add("/piece-records", start_piece_records);

@@ -56,6 +56,8 @@ Result<Palette> palette_of(const std::optional<nlohmann::json>& requested, Value
 
 // Returns false for a condition because it only paints one value where it is true.
 bool computes_numbers(const protocol::LayerCreate& body) {
+  if (body.compute && body.compute->kind == protocol::ShapeRecipeKind::significant_change)
+    return false;
   if (!body.expression) return body.compute.has_value();
   const auto expression = app::parse_formula(*body.expression);
   return !expression || !expression->is_condition();
@@ -367,7 +369,8 @@ void add_layer_routes(Router& router, const RouteContext& context) {
               .handler = answering(
                   [&context](const Request& request) { return compute(context, request); }),
               .role = Role::annotator,
-              .query = {"overwrite"}});
+              .query = {"overwrite"},
+              .is_long_edit = true});
 }
 
 }  // namespace strata::net

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "app/authorization/visibility_leak_check.h"
 #include "app/figures/class_names.h"
 #include "app/records/readable_area.h"
 #include "core/compensated_sum.h"
@@ -7,10 +8,10 @@
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
-#include "domain/scene/units.h"
 #include "expression/expression_parser.h"
 #include "media/picture.h"
 #include "net/api/addressed.h"
+#include "net/api/layers/region_reader.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
@@ -18,21 +19,24 @@
 #include "net/serialization/sheet_response.h"
 #include "net/serialization/statistics_serialization.h"
 #include "net/transport/server_options.h"
+#include "query/sampling/texel_samples.h"
+#include "query/statistics/agreement.h"
 #include "query/statistics/cross_table.h"
 #include "room/edit.h"
 #include "room/edits.h"
 #include "room/layers.h"
-#include "room/place.h"
 #include "room/queries.h"
 #include "room/room.h"
 #include "room/selection.h"
+#include "store/content/named_parts.h"
 #include "store/store.h"
 #include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {
 
-Result<room::Selection> selection_of(const RouteContext& context, const room::Room& room,
+Result<room::Selection> selection_of(const RouteContext& context, const Request& request,
+                                     const room::Room& room,
                                      const std::optional<std::string>& where,
                                      const std::optional<protocol::Within>& within,
                                      const std::optional<protocol::At>& at) {
@@ -41,19 +45,11 @@ Result<room::Selection> selection_of(const RouteContext& context, const room::Ro
     auto condition = STRATA_TRY(query::parse_condition(*where, "where"));
     selection.where = std::move(condition);
   }
-  if (within && within->path) {
-    auto outline =
-        outline_of(*within->camera, *within->path, within->through.value_or(false), within->steps);
-    if (!outline) {
-      outline.error().field = "within." + outline.error().field;
-      return tl::unexpected(outline.error());
-    }
-    selection.within = std::move(*outline);
-  } else if (within) {
-    room::Selection::Around around;
-    around.at = place_of(*within->at);
-    around.radius = in_model_units(*within->radius_mm, room.model().unit);
-    selection.within = std::move(around);
+  if (within) {
+    protocol::Within part = *within;
+    RegionReader reader(room, context.store.selections(), request.user());
+    selection.within = STRATA_TRY(reader.read(part));
+    selection.personal_field = reader.personal_field();
   }
   auto sequence = STRATA_TRY(find_sequence(context, room, at));
   selection.at = sequence;
@@ -61,26 +57,14 @@ Result<room::Selection> selection_of(const RouteContext& context, const room::Ro
 }
 
 Result<Response> statistics(const RouteContext& context, const Request& request) {
-  room::StatisticsOptions options;
-  for (const auto& part : split_list(request.query_or("include", {}))) {
-    if (part == "pieces")
-      options.pieces = true;
-    else if (part == "perimeter")
-      options.perimeter = true;
-    else if (part == "quantiles")
-      options.quantiles = true;
-    else
-      return fail(ErrorCode::invalid, "Unknown part",
-                  "`include` accepts pieces, perimeter and quantiles, separated by commas.",
-                  "include");
-  }
+  const auto options = STRATA_TRY(statistics_options(request));
   auto room = STRATA_TRY(open_room(context, request));
   auto layer = STRATA_TRY(room->layers().find(request.param("layer")));
   std::optional<std::string> where;
   if (const auto given = request.query.find("where"); given != request.query.end())
     where = given->second;
   const auto selection =
-      STRATA_TRY(selection_of(context, *room, where, std::nullopt, as_of(request)));
+      STRATA_TRY(selection_of(context, request, *room, where, std::nullopt, as_of(request)));
   const auto sequence = selection.at.value_or(room->edits().sequence());
   auto statistics = room->queries().statistics(layer.slug, selection, options);
   if (!statistics) return tl::unexpected(statistics.error());
@@ -114,19 +98,54 @@ Result<room::Selection::Changed> changed_of(const RouteContext& context, const r
   return changed;
 }
 
-// Returns the edit that paints the texels where the condition is true.
-Result<room::EditRequest> painting(const Request& request, const protocol::SelectRequest& body,
-                                   const room::Room& room) {
+// Checks that all users who see the painted layer may also see the layers that select the area. The
+// layers of conditions are checked when the conditions are evaluated (Selection::painted_for).
+Result<void> check_can_show(const room::Room& room, const room::Selection& selection,
+                            const Layer& painted) {
+  if (!selection.personal_field.empty())
+    return fail(ErrorCode::invalid, "Personal selection",
+                "Only you can see this selection, but other users can see the painted layer. Save "
+                "the selection for everyone, or send its definition.",
+                selection.personal_field);
+  for (const room::LayerRead& read : room::layers_compared(selection)) {
+    const auto source = STRATA_TRY(room.layers().find(read.slug));
+    STRATA_TRY(app::check_all_may_see(source, painted, read.field));
+  }
+  return {};
+}
+
+// Changes the area of the edit to the selected texels of its layer.
+void fill_only(room::EditRequest& edit, const protocol::Within& within,
+               room::SelectedArea::Texels selected) {
+  std::get<room::FillEdit>(edit.edit).region = room::FillEdit::Selected{
+      std::make_shared<const query::TexelSelection>(std::move(selected.texels)),
+      selected.resolution};
+  edit.record.erase("where");
+  edit.record["mode"] = "selection";
+  edit.record["within"] = protocol::to_json(within);
+}
+
+// The edit that paints the selection, and its layer.
+struct Painting {
+  room::EditRequest edit;
+  std::string slug;
+};
+
+// Returns the edit that paints the texels where the condition is true when the edit starts. With
+// `within`, it gets its area from the selection (`fill_only`), which then reads only what all users
+// of the layer can see.
+Result<Painting> painting(const Request& request, const protocol::SelectRequest& body,
+                          room::Selection& selection, const room::Room& room) {
   if (request.principal->role < Role::annotator)
     return fail(
         ErrorCode::forbidden, "Not allowed",
         "Only annotators can use `into`, because it paints on a layer. Ask an administrator "
         "for the role annotator.",
         "into");
-  if (!body.where || body.within || body.at || body.changed)
+  if (body.where.has_value() == body.within.has_value() || body.at || body.changed)
     return fail(ErrorCode::invalid, "Cannot paint this area",
-                "`into` can paint only where a condition is true in the current state. Send "
-                "`where`, but not `within`, `changed` or `at`.",
+                "`into` can paint where a condition is true, or a part of the surface, in the "
+                "current state. Send either `where` or `within`, but not `changed` or `at`.",
                 "into");
   const auto layer = room.layers().find(protocol::to_ref(body.into->layer));
   if (!layer) {
@@ -136,11 +155,14 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
   }
   protocol::EditFill fill;
   fill.mode = protocol::EditFillMode::where;
-  fill.where = body.where;
+  fill.where = body.where.value_or("true");
   fill.value = body.into->value;
   fill.erase = body.into->erase;
-  return edit_request(fill, *layer, room.model(), edit_id(request, *layer, "select"),
-                      request.author());
+  auto edit = STRATA_TRY(edit_request(fill, *layer, room.model(),
+                                      edit_id(request, *layer, "select"), request.author()));
+  STRATA_TRY(check_can_show(room, selection, *layer));
+  if (selection.within) selection.painted_for = layer->visibility;
+  return Painting{std::move(edit), layer->slug};
 }
 
 // Returns a PNG that is white where the byte is 1 and transparent elsewhere.
@@ -163,8 +185,8 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   const auto layers = find_layers(**room, refs, "layers");
   if (!layers) return respond(layers.error());
   for (const auto& layer : *layers) slugs.push_back(layer.slug);
-  auto selection = selection_of(context, **room, select_request->where, select_request->within,
-                                select_request->at);
+  auto selection = selection_of(context, request, **room, select_request->where,
+                                select_request->within, select_request->at);
   if (!selection) return respond(selection.error());
   if (select_request->changed) {
     auto changed = changed_of(context, **room, *select_request->changed);
@@ -182,13 +204,16 @@ void select(const RouteContext& context, const Request& request, const Respond& 
     options.seen = room::SeenGrid{picture->camera, picture->width, picture->height};
   std::optional<room::EditRequest> edit;
   if (select_request->into) {
-    auto made = painting(request, *select_request, **room);
+    auto made = painting(request, *select_request, *selection, **room);
     if (!made) return respond(made.error());
-    edit = std::move(*made);
+    edit = std::move(made->edit);
+    options.painted = std::move(made->slug);
   }
   const auto sequence = selection->at.value_or((*room)->edits().sequence());
-  const auto area = (*room)->queries().select(*selection, slugs, options);
+  auto area = (*room)->queries().select(*selection, slugs, options);
   if (!area) return respond(area.error());
+  if (edit && select_request->within)
+    fill_only(*edit, *select_request->within, std::move(area->painted.value()));
   nlohmann::json body = to_json(*area);
   if (const auto& grid = options.seen)
     body["picture"] = to_base64(selection_png(area->seen, grid->columns, grid->rows));
@@ -260,6 +285,14 @@ app::Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Lay
   return sheet;
 }
 
+nlohmann::json table_json(const query::CrossTable& table, const Layer& rows, const Layer& columns) {
+  nlohmann::json json = to_json(table);
+  if (query::share_classes(rows, columns))
+    if (const auto agreement = query::measure_agreement(table))
+      json["agreement"] = to_json(*agreement);
+  return json;
+}
+
 Result<Response> cross_table(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::CrossTableRequest>(request));
   // A script that sends no `f` gets keys. A sheet contains names because users read it.
@@ -272,7 +305,8 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
   const auto room = STRATA_TRY(open_room(context, request));
   const auto rows = STRATA_TRY(find_layers(*room, {protocol::to_ref(body.rows)}, "rows"));
   const auto columns = STRATA_TRY(find_layers(*room, {protocol::to_ref(body.columns)}, "columns"));
-  const auto selection = STRATA_TRY(selection_of(context, *room, body.where, body.within, body.at));
+  const auto selection =
+      STRATA_TRY(selection_of(context, request, *room, body.where, body.within, body.at));
   const auto sequence = selection.at.value_or(room->edits().sequence());
   const auto table =
       room->queries().cross_table(rows.front().slug, columns.front().slug, selection);
@@ -280,7 +314,7 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
   Response response =
       as_csv ? text_response(cross_table_csv(*table, rows.front().slug, columns.front().slug),
                              kCsvType)
-             : json_response(to_json(*table));
+             : json_response(table_json(*table, rows.front(), columns.front()));
   if (!as_csv && format != SheetFormat::json) {
     const auto side = [&](const Layer& layer, const std::vector<query::CrossTable::Key>& keys) {
       return side_names(context, *room, layer, request.role(), keys, selection.at, language);

@@ -1,9 +1,12 @@
 #include "net/api/models/figure_request.h"
 
+#include <glm/trigonometric.hpp>
+
 #include "domain/layers/layer.h"
 #include "domain/scene/model.h"
 #include "domain/tables/table.h"
 #include "net/api/addressed.h"
+#include "net/api/models/rollout_fit.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/at_field.h"
 #include "net/serialization/view_serialization.h"
@@ -92,6 +95,29 @@ Result<void> read_direction(const protocol::FigureRequest& body,
   return {};
 }
 
+// Reads the rollout, which replaces the direction.
+Result<void> read_unrolled(const protocol::FigureRequest& body, FigureRequest& figure) {
+  const auto refused = [](const char* field) {
+    return fail(
+        ErrorCode::invalid, "Setting without effect",
+        "A rollout has no camera, light, direction, normal, center and labels. Leave out `" +
+            std::string(field) + "`, or leave out `rollout`.",
+        field);
+  };
+  if (body.camera) return refused("camera");
+  if (body.light) return refused("light");
+  if (body.direction) return refused("direction");
+  if (body.normal) return refused("normal");
+  if (body.center) return refused("center");
+  if (body.labels) return refused("labels");
+  const auto fit = read_fit(*body.rollout);
+  if (!fit) return at_field(fit.error(), "rollout." + fit.error().field);
+  figure.rollout.emplace(FigureRequest::Rollout{*fit, {}, body.rollout->relief});
+  if (body.rollout->cut) figure.rollout->cut = glm::radians(*body.rollout->cut);
+  figure.from = "rollout";
+  return {};
+}
+
 Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& body,
                          FigureRequest& figure) {
   const auto layer = figure.room->layers().find(protocol::to_ref(body.layer));
@@ -124,7 +150,10 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
   figure.room = std::move(*room);
   figure.role = request.role();
   const auto camera = STRATA_TRY(read_shown(context, request, body, figure));
-  STRATA_TRY(read_direction(body, camera, figure));
+  if (body.rollout)
+    STRATA_TRY(read_unrolled(body, figure));
+  else
+    STRATA_TRY(read_direction(body, camera, figure));
   const auto at = STRATA_TRY(find_sequence(context, *figure.room, body.at));
   // Selects the layers before it reads the state of the review. Otherwise, a layer that becomes
   // visible in the meantime would appear in the figure without marks.
@@ -139,7 +168,8 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
   } else {
     room::DurableState newest = figure.room->edits().durable_state();
     figure.shown.at = newest.sequence;
-    figure.shown.provisional = std::move(newest.provisional);
+    // A rollout does not mark edits that wait for review.
+    if (!figure.rollout) figure.shown.provisional = std::move(newest.provisional);
   }
   figure.shown.shown.background = {kPaper, kPaper};
   STRATA_TRY(validate(figure.shown.shown.light));

@@ -1,6 +1,7 @@
 // Figures, which are files with drawings to scale.
 #include <boost/algorithm/string/predicate.hpp>
 
+#include "app/figures/rollout_figure.h"
 #include "domain/scene/model.h"
 #include "jobs/job_queue.h"
 #include "net/api/models/figure_request.h"
@@ -24,6 +25,15 @@ bool wants_job(const Request& request) {
   return false;
 }
 
+Result<std::shared_ptr<const TemporaryFile>> draw_figure(const RouteContext& context,
+                                                         ByteBudget& budget,
+                                                         const app::FigureRequest& figure,
+                                                         Progress& progress) {
+  const auto& folder = context.options.upload_dir;
+  return figure.rollout ? app::make_rollout_figure(context, budget, figure, folder, progress)
+                        : app::make_figure(context.store, budget, figure, folder, progress);
+}
+
 Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteBudget>& budget,
                         const Request& request) {
   auto figure_request = read_figure_request(context, request);
@@ -34,8 +44,7 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
         model.project_id,
         [&context, budget, figure_request = std::move(*figure_request),
          id = model.id](Progress& progress) -> Result<jobs::JobResult> {
-          auto file = STRATA_TRY(app::make_figure(context.store, *budget, figure_request,
-                                                  context.options.upload_dir, progress));
+          auto file = STRATA_TRY(draw_figure(context, *budget, figure_request, progress));
           jobs::JobResult result(id);
           result.file = std::move(file);
           return result;
@@ -45,8 +54,7 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
     return std::move(job_response(context, *job).with("Preference-Applied", "respond-async"));
   }
   Progress unwatched;
-  auto file = STRATA_TRY(app::make_figure(context.store, *budget, *figure_request,
-                                          context.options.upload_dir, unwatched));
+  auto file = STRATA_TRY(draw_figure(context, *budget, *figure_request, unwatched));
   Response response = file_response(std::move(file));
   add_sequences(response, *figure_request->shown.at,
                 figure_request->room->edits().durable_sequence());

@@ -143,7 +143,8 @@ Result<Response> repeat_import(const RouteContext& context, JobIdempotency& book
   if (known) return job_response(context, *known);
   const auto project =
       STRATA_TRY(context.store.projects().find(request.query_or("project", "default")));
-  auto job = STRATA_TRY(book.finished(request, project.id, stored.at("model").get<ModelId>()));
+  auto job = STRATA_TRY(
+      book.finished(request, project.id, stored.at("model").get<ModelId>(), jobs::JobKind::import));
   return job_response(context, job);
 }
 

@@ -146,7 +146,8 @@ Result<Response> repeat_orthophoto(const RouteContext& context, JobIdempotency& 
   jobs::JobResult result(stored.at("model").get<ModelId>());
   result.image = stored.at("look").get<SurfaceImageId>();
   const auto model = STRATA_TRY(stored_model(context, request));
-  auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
+  auto job =
+      STRATA_TRY(book.finished(request, model.project_id, std::move(result), jobs::JobKind::image));
   return job_response(context, job);
 }
 

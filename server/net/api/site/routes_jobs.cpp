@@ -21,8 +21,8 @@ bool is_own(const jobs::JobStatus& job, const Principal& who) {
 }
 
 // Returns the job as visible to `who`. The report or problem of a job may name layers that only
-// curators can see, and only curators start such jobs. Only the user who requested a file gets it
-// because it may contain data that is invisible to other users.
+// curators can see, so only curators and the user who started the job get it. Only the user who
+// requested a file gets it because it may contain data that is invisible to other users.
 nlohmann::json job_json(jobs::JobStatus job, const Principal& who) {
   if (job.result && !is_own(job, who)) job.result->file.reset();
   if (!sees(who.roles.in(job.project), Visibility::curators) && !is_own(job, who)) {

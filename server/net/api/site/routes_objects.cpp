@@ -1,5 +1,8 @@
 // Objects of a project, whose models are surveys of them. Viewers can read them, and curators can
 // change them. A change to a model puts it into an object (routes_models.cpp).
+#include <utility>
+
+#include "app/layers/survey_statistics.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
 #include "net/api/addressed.h"
@@ -8,6 +11,8 @@
 #include "net/auth/project_authorization.h"
 #include "net/http/idempotency_store.h"
 #include "net/http/page.h"
+#include "net/serialization/sheet_response.h"
+#include "net/serialization/statistics_serialization.h"
 #include "store/content/objects.h"
 #include "store/store.h"
 
@@ -75,6 +80,39 @@ Result<Response> delete_object(const RouteContext& context, const Request& reque
   return answer();
 }
 
+Result<app::SurveyStatisticsRequest> statistics_request(const Request& request) {
+  app::SurveyStatisticsRequest wanted;
+  wanted.layer = request.query_or("layer", {});
+  if (wanted.layer.empty())
+    return fail(ErrorCode::invalid, "Layer missing",
+                "Send the name or the slug of a layer in `layer`.", "layer");
+  wanted.options = STRATA_TRY(statistics_options(request));
+  for (auto [name, limit] : {std::pair("from", &wanted.from), std::pair("to", &wanted.to)}) {
+    *limit = request.query_or(name, {});
+    if (!limit->empty()) STRATA_TRY(check_survey_date(*limit, name));
+  }
+  wanted.language = STRATA_TRY(requested_language(request));
+  wanted.seen_by = request.role();
+  return wanted;
+}
+
+Result<Response> statistics_of_surveys(const RouteContext& context, const Request& request) {
+  const auto format = STRATA_TRY(sheet_format(request));
+  const auto separator = STRATA_TRY(csv_separator(request));
+  const auto wanted = STRATA_TRY(statistics_request(request));
+  const auto object = STRATA_TRY(stored_object(context, request));
+  const auto surveys = STRATA_TRY(app::survey_statistics(context, object, wanted));
+  if (format != SheetFormat::json) {
+    auto sheet = STRATA_TRY(sheet_response(app::survey_statistics_sheet(surveys), format, separator,
+                                           context.options.upload_dir));
+    return std::move(sheet.with("Vary", "Accept"));
+  }
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& survey : surveys) list.push_back(to_json(survey));
+  return json_response({{"object", object.id}, {"surveys", std::move(list)}})
+      .with("Vary", "Accept");
+}
+
 }  // namespace
 
 void add_object_routes(Router& router, const RouteContext& context) {
@@ -85,6 +123,14 @@ void add_object_routes(Router& router, const RouteContext& context) {
   routes.read(object, get_object);
   routes.change(Method::patch, object, change_object);
   routes.change(Method::remove, object, delete_object);
+  router.add({.method = Method::get,
+              .pattern = object + "/statistics",
+              .handler = answering([&context](const Request& request) {
+                return statistics_of_surveys(context, request);
+              }),
+              .query = {"layer", "include", "from", "to", "lang", "f", "separator"},
+              .is_question = true,
+              .state = state_of_surveys(context)});
 }
 
 }  // namespace strata::net

@@ -444,7 +444,7 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
   // Checks that the record can be deleted before any texel is changed.
   STRATA_TRY(context.store.records().remove(table.id, key, version, request.user(), true));
   // A stroke that began before the deletion must not paint the key afterwards.
-  const auto retired = context.rooms.retire_key(table.id, key);
+  const auto retired = context.rooms.retire_keys(table.id, std::span(&key, 1));
   auto deleted = retired ? delete_retired(context, request, table, key, version, texels, to)
                          : Result<Response>(tl::unexpected(retired.error()));
   if (!deleted)

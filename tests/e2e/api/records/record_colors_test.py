@@ -8,22 +8,13 @@ from support.cameras import camera_from
 from support.live_client import LAST_RECTANGLE, LiveClient
 from support.meshes import folded_grid
 from support.pictures import pixels
+from support.readings import dab
 
 M = "/models/sheet"  # a nearly flat sheet, x and y from 0 to 100 mm
 L = M + "/layers/pieces"
 UNLIT = {"mode": "unlit"}
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 PLACES = {1: (30, 30), 2: (70, 30), 3: (70, 70), 4: (30, 70)}
-
-
-def dab(server, value, x, y, radius=10):
-    query = urllib.parse.urlencode({"radius_mm": radius})
-    server.ok(
-        "POST",
-        f"{L}/readings?{query}",
-        f"x,y,z,value\n{x},{y},0,{value}\n",
-        headers={"Content-Type": "text/csv"},
-    )
 
 
 def color_at(rows, key):
@@ -122,7 +113,7 @@ def server(server):
     ):
         server.ok("POST", "/tables/pieces/records", {"values": values})
     for key, (x, y) in PLACES.items():
-        dab(server, key, x, y)
+        dab(server, L, key, x, y, 10)
     return server
 
 

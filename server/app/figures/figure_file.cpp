@@ -1,0 +1,56 @@
+#include "app/figures/figure_file.h"
+
+#include <algorithm>
+
+#include "core/text/number_text.h"
+#include "core/uuid.h"
+#include "domain/scene/model.h"
+
+namespace strata::app {
+namespace {
+
+std::string file_name(const FigureRequest& request, double scale) {
+  const std::string text = scale >= 1 ? "1-" + short_number(scale) : short_number(1 / scale) + "-1";
+  return request.room->model().slug + "-" + request.from + "-" + text +
+         std::string(figure::extension(request.format));
+}
+
+}  // namespace
+
+ChosenSheet choose_sheet(const FigureRequest& request, const std::vector<figure::Legend>& legends,
+                         const glm::dvec2& size, double metres_per_unit,
+                         const glm::dvec2& border_mm) {
+  constexpr double kMargin = 1.02, kSmallest_mm = 1;
+  std::optional<ChosenSheet> best;
+  for (const bool landscape : {false, true}) {
+    if (request.landscape && *request.landscape != landscape) continue;
+    figure::SheetLayout layout(figure::paper_mm(request.paper, landscape), request.captions,
+                               legends, request.dpi);
+    const glm::dvec2 room_mm = glm::max(layout.drawing_mm() - 2.0 * border_mm, kSmallest_mm),
+                     needed = size * (metres_per_unit * 1000) / room_mm;
+    const double tightness = std::max(needed.x, needed.y);
+    if (best && tightness >= best->tightness) continue;
+    const double scale =
+        request.scale.value_or(figure::fitting_scale(size * kMargin, room_mm, metres_per_unit));
+    best = ChosenSheet{std::move(layout), scale, tightness};
+  }
+  return std::move(*best);
+}
+
+Result<std::shared_ptr<const TemporaryFile>> write_figure_file(const FigureRequest& request,
+                                                               const figure::Sheet& sheet,
+                                                               const Picture& picture, double scale,
+                                                               const std::filesystem::path& folder,
+                                                               Progress& progress) {
+  auto file = std::make_shared<TemporaryFile>();
+  file->path = folder / (to_string(random_uuid()) + ".figure");
+  file->name = file_name(request, scale);
+  file->media_type = figure::media_type(request.format);
+  const figure::Document document{request.captions.title, request.captions.credit};
+  STRATA_TRY(figure::write_figure(sheet, picture, request.dpi, request.format, document, file->path,
+                                  progress));
+  file->bytes = std::filesystem::file_size(file->path);
+  return file;
+}
+
+}  // namespace strata::app

@@ -1,0 +1,98 @@
+#include "app/figures/rollout.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/layers/drawn_layers.h"
+#include "domain/scene/model.h"
+#include "domain/scene/up.h"
+#include "mesh/surface/surface_normals.h"
+#include "query/sampling/surface_colors.h"
+#include "room/caches/surface_image_cache.h"
+#include "room/queries.h"
+#include "room/surface.h"
+#include "room/surface_images.h"
+
+namespace strata::app {
+namespace {
+
+// The light of relief comes from the upper left of the sheet, in the directions right, up and
+// toward the viewer.
+const glm::dvec3 kLight = glm::normalize(glm::dvec3(-1, 1, 1.4));
+constexpr double kAmbient = 0.35;
+
+struct Colors {
+  query::SurfaceColors of_surface;
+  std::vector<MemoryLedger::Share> memory;  // reserved for the photos
+};
+
+Result<Colors> compose(const Services& services, const RolloutRequest& request) {
+  room::Room& room = *request.room;
+  Colors colors{query::SurfaceColors(room.surface().geometry()), {}};
+  const auto images =
+      request.shown.images.value_or(room::surface_images_shown(room.surface_images().all()));
+  for (const room::SurfaceImageView& image : images) {
+    DecodedPhoto photo = STRATA_TRY(decode_photo(services, image));
+    colors.of_surface.add_photo(std::move(photo.picture), image.opacity);
+    colors.memory.push_back(std::move(photo.memory));
+  }
+  for (const Layer& layer : request.layers) {
+    auto tiles = STRATA_TRY(room.queries().tiles(layer.slug, request.at));
+    query::DrawnLayer drawn = STRATA_TRY(
+        drawn_layer(services, request.role, {layer, std::move(tiles)}, request.shown.of(layer.id)));
+    colors.of_surface.add_layer(std::move(drawn));
+  }
+  return colors;
+}
+
+// Returns the brightness of a point: 1 where it has the normal of the cylinder or cone.
+double relief_at(const mesh::RolloutSheet& sheet, const mesh::RolloutHit& pixel,
+                 const mesh::SurfaceNormals& normals) {
+  const glm::dvec3 light = sheet.in_world(pixel.place, glm::dvec2(kLight), kLight.z);
+  const glm::dvec3 normal(normals.at(pixel.hit.triangle, pixel.hit.barycentric));
+  return kAmbient + (1 - kAmbient) * std::max(0.0, glm::dot(normal, light)) / kLight.z;
+}
+
+}  // namespace
+
+Result<RolloutPlan> plan_rollout(const RolloutRequest& request) {
+  const auto geometry = request.room->surface().geometry();
+  mesh::FitRequest wanted = request.fit;
+  const UpFrame frame = up_frame(request.room->model().up);
+  wanted.up = frame.up;
+  wanted.zero = -frame.into;  // the front of the model
+  const auto fit = STRATA_TRY(mesh::fit_developed_surface(*geometry, wanted));
+  const auto sheet = STRATA_TRY(mesh::plan_rollout(*geometry, fit, request.cut));
+  return RolloutPlan{fit, sheet};
+}
+
+Result<Picture> draw_rollout(const Services& services, const RolloutRequest& request,
+                             const RolloutPlan& plan, const mesh::RolloutWindow& window,
+                             Progress& progress) {
+  const auto geometry = request.room->surface().geometry();
+  const auto tree = request.room->surface().search_tree();
+  const Colors colors = STRATA_TRY(compose(services, request));
+  std::optional<mesh::SurfaceNormals> normals;
+  if (request.relief) normals.emplace(geometry);
+  Picture picture{window.width, window.height, {}};
+  picture.rgba.resize(std::size_t{4} * static_cast<std::size_t>(window.width) *
+                      static_cast<std::size_t>(window.height));
+  const auto draw_row = [&](int row, std::span<const std::optional<mesh::RolloutHit>> pixels) {
+    std::uint8_t* rgba =
+        &picture.rgba[std::size_t{4} * static_cast<std::size_t>(row) * pixels.size()];
+    for (const auto& pixel : pixels) {
+      if (pixel) {
+        const double brightness = normals ? relief_at(plan.sheet, *pixel, *normals) : 1;
+        const glm::dvec3 color = brightness * colors.of_surface.at(pixel->hit);
+        for (int i = 0; i < 3; ++i)
+          rgba[i] = static_cast<std::uint8_t>(std::lround(std::clamp(color[i], 0.0, 255.0)));
+        rgba[3] = 255;
+      }
+      rgba += 4;
+    }
+  };
+  STRATA_TRY(mesh::trace_rollout(*tree, *geometry, plan.sheet, window, draw_row, progress));
+  return picture;
+}
+
+}  // namespace strata::app

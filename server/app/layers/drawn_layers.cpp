@@ -1,0 +1,41 @@
+#include "app/layers/drawn_layers.h"
+
+#include "domain/layers/layer.h"
+#include "room/caches/record_colors.h"
+#include "room/rooms.h"
+#include "store/content/surface_images.h"
+#include "store/store.h"
+
+namespace strata::app {
+
+Result<DecodedPhoto> decode_photo(const Services& services, const room::SurfaceImageView& image) {
+  const auto encoded = STRATA_TRY(services.store.surface_images().picture(image.surface_image_id));
+  const auto info = STRATA_TRY(inspect_picture(encoded));
+  // Decoding needs at most twice the memory of the pixels.
+  const auto bytes =
+      static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height) * 8;
+  auto share = STRATA_TRY(services.rooms.memory().reserve(bytes, "a photo of the surface"));
+  auto picture = STRATA_TRY(decode_picture(encoded));
+  return DecodedPhoto{std::move(picture), std::move(share)};
+}
+
+Result<query::DrawnLayer> drawn_layer(const Services& services, Role role,
+                                      const query::LayerView& view,
+                                      const room::LayerView& settings) {
+  auto palette = std::make_shared<const Palette>(settings.palette.value_or(view.layer.palette));
+  const auto highlight =
+      settings.highlight ? std::make_shared<const room::Highlight>(*settings.highlight) : nullptr;
+  if (view.layer.table && room::RecordColors::needs_records(*palette, highlight)) {
+    auto by_key = STRATA_TRY(room::RecordColors::make(
+        services.store, {*view.layer.table, sight_of(role), palette, highlight}));
+    palette = std::move(by_key);
+  }
+  return query::DrawnLayer{view.snapshot.tiles,
+                           view.layer.resolution,
+                           view.layer.type,
+                           std::move(palette),
+                           settings.opacity.value_or(view.layer.opacity),
+                           view.layer.blend};
+}
+
+}  // namespace strata::app

@@ -1,0 +1,168 @@
+#include "app/layers/surface_functions.h"
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "domain/scene/model.h"
+#include "mesh/parallel.h"
+#include "mesh/surface/geometry.h"
+#include "mesh/texels/texel_graph.h"
+#include "query/conditions/expression_evaluator.h"
+#include "query/regions/distance_values.h"
+#include "query/regions/focal.h"
+#include "room/layers.h"
+#include "room/pipeline/expression_binding.h"
+#include "room/queries.h"
+#include "room/rooms.h"
+#include "room/surface.h"
+
+namespace strata::app {
+namespace {
+
+// Bytes per texel of the map while one function is computed, and of the values of each function.
+constexpr std::uint64_t kWorkBytesPerTexel = 36, kValueBytesPerTexel = 5;
+// The triangles across seams, for the texels within two steps of a link.
+constexpr std::uint64_t kSeamBytesPerTexel = 2048;
+
+// Computes functions of one formula.
+class SurfaceFunctionValues {
+ public:
+  SurfaceFunctionValues(const Services& services, const Layer& layer, const Author& author,
+                        std::shared_ptr<const mesh::SurfaceMap> map,
+                        std::shared_ptr<const mesh::TexelGraph> graph, const query::Frame& frame)
+      : services_(services),
+        layer_(layer),
+        author_(author),
+        map_(std::move(map)),
+        graph_(std::move(graph)),
+        frame_(frame) {}
+
+  // Reads `views`, and returns the values as one more.
+  Result<query::LayerView> compute(const query::SurfaceFormula::Function& requested,
+                                   const std::vector<query::LayerView>& views,
+                                   Progress& progress) const {
+    const Expression& argument = requested.function.parts.front();
+    const auto bound = STRATA_TRY(room::bind_for_layer(argument, views, services_.store,
+                                                       author_.role, layer_.visibility, kField));
+    query::LayerView result;
+    result.layer.slug = requested.slug;
+    result.layer.resolution = layer_.resolution;
+    result.layer.type =
+        requested.function.op == Op::nearest ? type_of(argument, views) : ValueType::f32;
+    auto values =
+        STRATA_TRY(argument.is_condition()
+                       ? distances(bound, requested.function, progress)
+                       : of_numbers(bound, requested.function, type_of(argument, views), progress));
+    auto content =
+        STRATA_TRY(query::make_patch({}, result.layer.type, *map_, std::move(values), progress));
+    for (auto& [address, tile] : content.tiles)
+      result.snapshot.tiles[address] = std::move(tile.after);
+    return result;
+  }
+
+ private:
+  using Op = Expression::Op;
+  static constexpr const char* kField = "expression";
+
+  Result<query::SurfaceValues> distances(const room::BoundForLayer& condition,
+                                         const Expression& function, Progress& progress) const {
+    const auto sources = STRATA_TRY(query::select_where(
+        condition.expression, condition.layers, *map_, kField, mesh::background_threads(), frame_));
+    return query::distance_values(sources, function.number, *map_, *graph_, progress,
+                                  mesh::background_threads());
+  }
+
+  Result<query::SurfaceValues> of_numbers(const room::BoundForLayer& number,
+                                          const Expression& function, ValueType type,
+                                          Progress& progress) const {
+    const int threads = mesh::background_threads();
+    const auto tiles = STRATA_TRY(query::compute_tiles(number.expression, number.layers, *map_,
+                                                       frame_, type, kField, threads));
+    const auto values = query::read_surface_values(tiles, type, *map_);
+    if (function.op == Op::nearest)
+      return query::nearest_values(values, function.number, *map_, *graph_, progress, threads);
+    return query::focal_values(focal_of(function.op), values, type, function.number, *map_, *graph_,
+                               kField, progress, threads);
+  }
+
+  static query::Focal focal_of(Op op) {
+    switch (op) {
+      case Op::focal_min: return query::Focal::min;
+      case Op::focal_max: return query::Focal::max;
+      case Op::focal_variety: return query::Focal::variety;
+      default: return query::Focal::mean;
+    }
+  }
+
+  // A layer keeps its type, because f32 does not hold all keys.
+  static ValueType type_of(const Expression& number, const std::vector<query::LayerView>& views) {
+    if (number.op != Expression::Op::layer) return ValueType::f32;
+    const auto found =
+        std::ranges::find(views, number.name, [](const auto& view) { return view.layer.slug; });
+    return found == views.end() ? ValueType::f32 : found->layer.type;
+  }
+
+  const Services& services_;
+  const Layer& layer_;
+  const Author& author_;
+  const std::shared_ptr<const mesh::SurfaceMap> map_;
+  const std::shared_ptr<const mesh::TexelGraph> graph_;
+  const query::Frame frame_;
+};
+
+// Returns the layers of the model. Only those that the functions read have texels.
+Result<std::vector<query::LayerView>> views_read_by(room::Room& room,
+                                                    const query::SurfaceFormula& formula) {
+  std::vector<query::LayerView> views;
+  for (Layer& layer : room.layers().all()) {
+    const bool is_read = std::ranges::any_of(formula.functions, [&](const auto& each) {
+      const auto read = layers_of(each.function);
+      return std::ranges::find(read, layer.slug) != read.end();
+    });
+    TileMirror::Snapshot snapshot;
+    if (is_read) snapshot = STRATA_TRY(room.queries().tiles(layer.slug, {}));
+    views.push_back({std::move(layer), std::move(snapshot)});
+  }
+  return views;
+}
+
+}  // namespace
+
+Result<MemoryLedger::Share> reserve_surface_functions(const Services& services, room::Room& room,
+                                                      const Layer& layer, std::size_t functions) {
+  const auto map = STRATA_TRY(room.surface().map(layer.resolution));
+  const auto graph = STRATA_TRY(room.surface().graph(layer.resolution));
+  std::uint64_t linked = 0;
+  for (const std::uint64_t texels : graph->has_links)
+    linked += static_cast<std::uint64_t>(std::popcount(texels));
+  return services.rooms.memory().reserve(
+      map->block_of_slot.size() * 64 * (kWorkBytesPerTexel + functions * kValueBytesPerTexel) +
+          linked * kSeamBytesPerTexel,
+      "distances along the surface");
+}
+
+Result<void> compute_surface_functions(const Services& services, room::Room& room,
+                                       const Layer& layer, const query::SurfaceFormula& formula,
+                                       const Author& author, std::vector<query::LayerView>& shapes,
+                                       Progress& progress, std::size_t first, std::size_t steps) {
+  auto map = STRATA_TRY(room.surface().map(layer.resolution));
+  auto graph = STRATA_TRY(room.surface().graph(layer.resolution));
+  const SurfaceFunctionValues values(services, layer, author, std::move(map), std::move(graph),
+                                     {room.surface().geometry()->origin, room.model().metres()});
+  std::vector<query::LayerView> views = STRATA_TRY(views_read_by(room, formula));
+  views.insert(views.end(), shapes.begin(), shapes.end());
+  for (const auto& function : formula.functions) {
+    progress.begin_stage(double(first) / double(steps), double(first + 1) / double(steps));
+    ++first;
+    auto computed = STRATA_TRY(values.compute(function, views, progress));
+    if (progress.cancelled()) return cancelled_problem();
+    views.push_back(computed);
+    shapes.push_back(std::move(computed));
+  }
+  return {};
+}
+
+}  // namespace strata::app
