@@ -212,6 +212,30 @@ test("what is connected is erased by one click, and what is not stays", async ()
   await page.keyboard.press("b");
 });
 
+test("the wand selects similar surface, and its tolerance changes the selection", async () => {
+  const before = (await statistics("test")).area_m2;
+  await page.keyboard.press("Shift+G");
+  await click([0.5, 0.5]);
+  await selected();
+  await shot("wand");
+  const size = () => selection().getByRole("status").innerText();
+  const first = await size();
+  await selection().getByRole("slider").fill("120");
+  await wait_for(async () => (await size()) !== first, "another selection");
+  await selected();
+  await button(words.selection.fill).click();
+  await selection().waitFor({ state: "detached" });
+  assert.ok((await statistics("test")).area_m2 > before);
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  assert.equal((await statistics("test")).area_m2, before);
+  await click([0.5, 0.5]);
+  await selected();
+  await page.keyboard.press("Escape");
+  await selection().waitFor({ state: "detached" });
+  await page.keyboard.press("b");
+});
+
 test("a condition over other layers; a wrong one says where it is wrong", async () => {
   await button(words.areas.where).click();
   const condition = page.getByLabel(words.areas.condition);

@@ -223,6 +223,30 @@ test("so are another direction, paper and orientation", async () => {
   await sheet_after(ada, turned, () => radio(ada, "A5").click());
 });
 
+test("an unrolled vessel has fields for its surface, and neither camera nor labels", async () => {
+  const before = await sheet(ada);
+  const unrolled = await sheet_after(ada, before, async () => {
+    await field(ada, "from").selectOption("rollout");
+    await field(ada, "axis").selectOption("vertical");
+  });
+  const { rollout, camera, light, direction } = asked.get(ada).preview;
+  assert.deepEqual([camera, light, direction], [undefined, undefined, undefined]);
+  assert.equal(Math.hypot(...rollout.axis.direction), 1);
+  assert.equal(await field(ada, "labels").count(), 0);
+  await shot(ada, "unrolled");
+  const cut = await sheet_after(ada, unrolled, () => field(ada, "cut").fill("90"));
+  assert.equal(asked.get(ada).preview.rollout.cut, 90);
+  // a wrong number stays at its field, and the preview remains
+  await field(ada, "cut").fill("900");
+  assert.equal(await field(ada, "cut").getAttribute("aria-invalid"), "true");
+  await button(ada, words.figures.make).click();
+  assert.equal(asked.get(ada).file, undefined);
+  assert.equal(asked.get(ada).preview.rollout.cut, 90);
+  await field(ada, "cut").fill("");
+  await sheet_after(ada, cut, () => field(ada, "from").selectOption("top"));
+  assert.equal(asked.get(ada).preview.rollout, undefined);
+});
+
 test("square to a face: the dialog steps aside, Escape leads back as it was, a click takes the face", async () => {
   const hint = ada.page.locator("strata-face-hint section");
   await field(ada, "from").selectOption("face");
@@ -451,6 +475,21 @@ test("what a browser kept and is no choice does no harm", async () => {
     [await field(ada, "from").inputValue(), await field(ada, "scale").inputValue()],
     ["camera", ""],
   );
+});
+
+test("an unrolled picture can be opened again after its dialog was closed", async () => {
+  const unrolled = ada.page.locator("strata-rollout-dialog");
+  await open_model(ada);
+  await open_tab(ada.page, words, words.view.title);
+  for (let time = 0; time < 2; ++time) {
+    await ada.page
+      .locator("strata-view-panel")
+      .getByRole("button", { name: words.figures.unroll })
+      .click();
+    await unrolled.locator('figure[aria-busy="false"]').waitFor();
+    await ada.page.keyboard.press("Escape");
+    await unrolled.waitFor({ state: "detached" });
+  }
 });
 
 test("on a phone, by who may only look", async () => {

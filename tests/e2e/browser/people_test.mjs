@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { square_ply } from "../support/js/meshes.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -59,24 +60,6 @@ const shot = async ({ page }, name) => {
 
 /** Imports a square of 100 mm. */
 async function import_square(name, project) {
-  const ply = [
-    "ply",
-    "format ascii 1.0",
-    "element vertex 4",
-    "property float x",
-    "property float y",
-    "property float z",
-    "element face 2",
-    "property list uchar int vertex_indices",
-    "end_header",
-    "0 0 0",
-    "100 0 0",
-    "100 100 0",
-    "0 100 0",
-    "3 0 1 2",
-    "3 0 2 3",
-    "",
-  ].join("\n");
   const started = await fetch(
     `${server.url}/api/v1/models?filename=square.ply&name=${name}&unit=mm&project=${project}`,
     {
@@ -85,7 +68,7 @@ async function import_square(name, project) {
         Authorization: `Bearer ${server.token}`,
         "Content-Type": "application/octet-stream",
       },
-      body: ply,
+      body: square_ply(100),
     },
   );
   assert.equal(started.status, 202, await started.clone().text());

@@ -97,7 +97,7 @@ test("a layer is computed from the shape", async () => {
   await start_computing("Curvature", { "Within a radius of": "0" });
   await button(words.layer_dialog.compute).click();
   await page.getByText(words.shape.bad_length).waitFor();
-  await page.getByLabel(words.shape.radius).fill("4");
+  await page.getByLabel(words.shape.lengths.radius.label).fill("4");
   await keep_picture("dialog");
   await button(words.layer_dialog.compute).click();
   await page.getByText(words.shape.started("Curvature")).waitFor();
@@ -141,7 +141,7 @@ test("it is locked; unlocked, it can be taken back like a stroke", async () => {
 test("long work shows how far it is, and is cancelled", async () => {
   await start_computing(words.shape.kinds.ambient_occlusion.title, {
     Name: "Never",
-    [words.shape.distance]: "30",
+    [words.shape.lengths.distance.label]: "30",
     [words.shape.rays]: "7",
   });
   await button(words.layer_dialog.compute).click();

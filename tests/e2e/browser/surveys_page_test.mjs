@@ -4,32 +4,12 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { square_ply } from "../support/js/meshes.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
 const { surveys } = words;
-
-/** A square with this side, in the unit of the file. */
-const square = (side) =>
-  [
-    "ply",
-    "format ascii 1.0",
-    "element vertex 4",
-    "property float x",
-    "property float y",
-    "property float z",
-    "element face 2",
-    "property list uchar int vertex_indices",
-    "end_header",
-    "0 0 0",
-    `${side} 0 0`,
-    `${side} ${side} 0`,
-    `0 ${side} 0`,
-    "3 0 1 2",
-    "3 0 2 3",
-    "",
-  ].join("\n");
 
 let carl, server, first, second;
 
@@ -44,7 +24,7 @@ async function imported(name, unit, side) {
   const response = await fetch(`${server.url}/api/v1/models?${query}`, {
     method: "POST",
     headers: { Authorization: `Bearer ${server.token}` },
-    body: square(side),
+    body: square_ply(side),
   });
   assert.equal(response.status, 202, await response.clone().text());
   const { id } = await response.json();
@@ -173,6 +153,50 @@ test("two surveys are next to each other, with a divider that moves", async () =
   );
   await carl.page.getByRole("combobox", { name: surveys.compare, exact: true }).selectOption("");
   await wait_for(async () => (await divider().count()) === 0, "the open survey alone");
+});
+
+async function painted(model, layer, value, [x, y], radius_mm) {
+  const response = await fetch(
+    `${server.url}/api/v1/models/${model.id}/layers/${layer}/readings?radius_mm=${radius_mm}`,
+    {
+      method: "POST",
+      headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "text/csv" },
+      body: `x,y,z,value\n${x},${y},0,${value}\n`,
+    },
+  );
+  assert.equal(response.status, 200, await response.clone().text());
+}
+
+test("the dialog of the changes shows which class became which", async () => {
+  const changes = surveys.changes;
+  await painted(first, "cracks", 1, [50, 50], 20);
+  await painted(second, "cracks", 2, [0.05, 0.05], 20);
+  await painted(second, "cracks", 2, [0.08, 0.02], 5); // a new piece
+  await carl.page.getByRole("button", { name: changes.open, exact: true }).click();
+  await carl.page
+    .locator("strata-changes-dialog select[name=layer]")
+    .selectOption({ label: "Cracks" });
+  await carl.page.getByRole("button", { name: changes.compare, exact: true }).click();
+  const table = carl.page.getByRole("region", { name: changes.table("2019", "Jun 2022") });
+  await table.getByRole("rowheader", { name: "1", exact: true }).waitFor();
+  const became = table.getByRole("row").filter({ hasText: /^\s*1/ }).getByRole("cell").first();
+  near(Math.round(Number(await became.textContent()) / 0.5) * 0.5, 12.5); // π · 20² mm²
+  await shoot("changes");
+  // The piece is on the surface of the other survey, which has another unit.
+  const before = view_of(carl);
+  await carl.page.getByTitle(changes.fly, { exact: true }).first().click();
+  await carl.rested();
+  assert.notDeepEqual(view_of(carl), before);
+  await carl.page.getByRole("radio", { name: changes.views.statistics, exact: true }).click();
+  const statistics = carl.page.getByRole("region", { name: changes.statistics });
+  await statistics.getByRole("rowheader", { name: "Jun 2022", exact: true }).waitFor();
+  await shoot("statistics");
+  const [csv] = await Promise.all([
+    carl.page.waitForEvent("download"),
+    carl.page.getByRole("button", { name: `CSV: ${changes.statistics}`, exact: true }).click(),
+  ]);
+  assert.equal(csv.suggestedFilename(), "cracks-surveys.csv");
+  await carl.page.keyboard.press("Escape");
 });
 
 test("a curator deletes the object, and its models remain", async () => {

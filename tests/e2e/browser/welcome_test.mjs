@@ -6,6 +6,7 @@ import { join } from "node:path";
 import { active } from "../support/js/accessible.mjs";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { square_ply } from "../support/js/meshes.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
@@ -73,25 +74,7 @@ async function offers_nothing(who) {
   assert.equal(await card_of(who).count(), 0, "the tour offers itself again");
 }
 
-/** A square of 100 mm. */
-const kSquare = [
-  "ply",
-  "format ascii 1.0",
-  "element vertex 4",
-  "property float x",
-  "property float y",
-  "property float z",
-  "element face 2",
-  "property list uchar int vertex_indices",
-  "end_header",
-  "0 0 0",
-  "100 0 0",
-  "100 100 0",
-  "0 100 0",
-  "3 0 1 2",
-  "3 0 2 3",
-  "",
-].join("\n");
+const kSquare = square_ply(100); // mm
 
 async function import_square(name, project) {
   const started = await fetch(

@@ -142,6 +142,11 @@ def make_site(server):
     server.ok("POST", query(M + "/tours/round/files", name="plan.png"), PNG)
     server.ok("POST", M + "/tours/round/kiosks", {"name": "Hall"})
     server.ok("POST", M + "/snapshots", {"name": "First"})
+    server.ok(
+        "POST",
+        M + "/selections",
+        {"name": "Sunny", "audience": "everyone", "within": {"where": "true"}},
+    )
     assert hidden["visibility"] == "private" and public["visibility"] == "public"
     return camera, before, public, hidden, thread
 
@@ -164,6 +169,7 @@ def words(server, public):
         "view": ["plan"],
         "tour": ["round"],
         "snapshot": ["first"],
+        "selection": ["sunny"],
         "file": ["1"],
         "kiosk": ["1"],
         "name": ["sheet.ply"],
@@ -209,6 +215,7 @@ def queries(server, path, operation):
         "cell": ["20mm"],
         "columns": ["name,depth"],
         "key": ["1"],
+        "layer": ["cracks", "finds"],
         "layers": ["cracks"],
         "parameter-name": ["cracks,finds"],
         "project": ["default"],
@@ -253,6 +260,15 @@ def reading_bodies(camera):
             {"format": "svg", "dpi": 50},
             {"format": "svg", "dpi": 50, "view": "plan"},
             {"format": "svg", "dpi": 50, "labels": {"layer": "finds", "column": "name"}},
+            {
+                "format": "svg",
+                "dpi": 50,
+                "rollout": {"axis": {"point": [50, 50, -60], "direction": [0, 1, 0]}},
+            },
+        ],
+        "rollout": [
+            {"axis": {"point": [50, 50, -60], "direction": [0, 1, 0]}, "mm_per_pixel": 2},
+            {"axis": {"point": [50, 50, -60], "direction": [0, 1, 0]}, "mm_per_pixel": 2, "at": 2},
         ],
         "match_attachments": [{"pattern": "{name}.png", "column": "name", "names": ["Find 1.png"]}],
     }

@@ -1099,6 +1099,15 @@ export interface SnapshotEvent {
   user?: string;
 }
 
+/** A saved selection was created, changed or deleted. The server sends this message for saved selections of the model that the participant can see. A selection that becomes personal counts as deleted for all other users. Clients that show a list of selections should read the selection again. */
+export interface SelectionEvent {
+  op: "selection";
+  event: "created" | "changed" | "deleted";
+  /** Id of the selection. */
+  selection: number;
+  user?: string;
+}
+
 /** Another node has the model. The last message of a connection, if the site has several nodes. The server then closes the connection with the code 4307. The client should connect again at once, and send the edits that are not durable again with the same ids. */
 export interface Moved {
   op: "moved";
@@ -1577,7 +1586,7 @@ export interface ProjectPersonList {
 }
 
 /** Kind of the changed item. */
-export type ActivityKind = "edit" | "layer" | "look" | "view" | "tour" | "model" | "table" | "columns" | "records" | "comment" | "member" | "project" | "snapshot";
+export type ActivityKind = "edit" | "layer" | "look" | "view" | "tour" | "model" | "table" | "columns" | "records" | "comment" | "member" | "project" | "snapshot" | "selection";
 
 /** Changed property. */
 export type ChangedProperty = string;
@@ -1812,6 +1821,78 @@ export interface ObjectList {
   total: number;
 }
 
+/** Area of a class in a survey. */
+export interface SurveyClass {
+  /** Value of the texels. For a layer of records, the key of the record. */
+  key: number;
+  /** Name of the record, or label in the legend, or else the value. */
+  class: string;
+  texels: number;
+  area_m2: number;
+  /** Number of connected areas of this class, if requested. */
+  pieces?: number;
+  /** Length of the borders of these areas along the surface, if requested. */
+  perimeter_m?: number;
+}
+
+/** The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Present if requested and if the total area is not 0. */
+export interface Quantiles {
+  p5: number;
+  p25: number;
+  p50: number;
+  p75: number;
+  p95: number;
+}
+
+/** Statistics of a layer in a survey, weighted by surface area. `min`, `max`, `mean` and `std` are absent if the layer is empty, and if each value is a class: in layers of records, and in layers of whole numbers with a categorical palette. */
+export interface SurveyLayerStatistics {
+  /** Id of the layer. */
+  layer: number;
+  /** Slug of the layer. */
+  slug: string;
+  /** Unit of the values. */
+  unit: string;
+  /** Sequence of the model in the counted state. */
+  sequence: number;
+  texels: number;
+  /** Area with a value. */
+  area_m2: number;
+  /** Share of the model's surface. */
+  share: number;
+  min?: number;
+  max?: number;
+  mean?: number;
+  std?: number;
+  /** Number of connected areas, if requested. In layers of whole numbers, each area has a single value. */
+  pieces?: number;
+  /** Length of the borders of the valid areas along the surface, if requested. */
+  perimeter_m?: number;
+  quantiles?: Quantiles;
+  /** Sorted by key. Absent if the values are not classes, and if the surveys together have more than 1024 classes with different names. */
+  classes?: SurveyClass[];
+}
+
+/** Survey with the statistics of a layer. */
+export interface SurveyStatistics {
+  /** Id of the model. */
+  model: number;
+  /** Slug of the model. */
+  slug: string;
+  /** Name of the model. */
+  name: string;
+  date: SurveyDate;
+  /** null: the survey has no layer with this name or slug that the user may see. */
+  statistics: SurveyLayerStatistics | null;
+}
+
+/** Statistics of a layer in the surveys of an object. */
+export interface ObjectStatistics {
+  /** Id of the object. */
+  object: number;
+  /** Sorted by date. */
+  surveys: SurveyStatistics[];
+}
+
 /** New object. */
 export interface ObjectCreate {
   name: ObjectName;
@@ -1823,20 +1904,20 @@ export interface ObjectPatch {
 }
 
 /** Operation on the regions of a layer. */
-export type RegionOperation = "sieve" | "fill-holes" | "majority" | "border" | "pieces";
+export type RegionOperation = "sieve" | "fill-holes" | "majority" | "border" | "open" | "close" | "pieces";
 
 /** Result of an operation on the regions of a layer. */
 export interface CleanupReport {
   operation: RegionOperation;
-  /** false: this was a preview, or there was nothing to change. */
+  /** false: no texel was changed: this was a preview, there was nothing to change, or all texels were edited in the meantime. */
   applied: boolean;
-  /** Number of regions that change: for sieve and fill-holes, the regions with a new value; for pieces, the new records. 0 for majority and border. */
+  /** Number of regions that change: for sieve and fill-holes, the regions with a new value; for pieces, the new records. 0 for the other operations, and if an edit changed no texel. */
   regions: number;
   /** Number of texels that change. In a preview, the number that would change. */
   texels: number;
   /** Area of these texels. */
   area_m2: number;
-  /** Number of texels that stay as they are, because they were edited while the result was computed. */
+  /** Number of texels that stay as they are, because they were edited while the result was computed. Unknown (0) for a repeated call after a restart of the server. */
   skipped_texels?: number;
   /** Sequence of the edit. Absent if there was no edit. */
   sequence?: number;
@@ -1844,6 +1925,8 @@ export interface CleanupReport {
   provisional?: boolean;
   /** For pieces: the keys of the new records, the largest piece first. */
   keys?: number[];
+  /** For pieces: those of `keys` whose records have no texels, because other users painted their pieces completely in the meantime. */
+  unpainted_keys?: number[];
 }
 
 /** File that a job created. The user who started the job can get the file from `/jobs/{job}/file`. The server keeps only the newest files. */
@@ -1851,6 +1934,95 @@ export interface JobFile {
   name: string;
   media_type: string;
   bytes: number;
+}
+
+/** Piece that appeared or vanished. */
+export interface ChangedPiece {
+  value: number;
+  area_m2: number;
+  /** A place in the piece, in world coordinates and the unit of the model of the request. */
+  at: Point3;
+}
+
+/** Connected areas of one value that overlap nothing painted in the other survey. */
+export interface ChangedPieces {
+  /** The 1000 largest, the largest first. */
+  pieces: ChangedPiece[];
+  /** Number of all pieces. */
+  total: number;
+  /** Area of all pieces. */
+  area_m2: number;
+}
+
+/** Area of a value. */
+export interface ClassArea {
+  value: number;
+  area_m2: number;
+}
+
+/** Agreement about one class. */
+export interface ClassAgreement {
+  /** Null: not painted. */
+  key: number | null;
+  /** The area of the class in both layers. */
+  area_both_m2: number;
+  /** The area of the class in the layer of the rows, also outside the other layer. */
+  area_first_m2: number;
+  /** The area of the class in the layer of the columns, also outside the other layer. */
+  area_second_m2: number;
+  /** Intersection over union (Jaccard index). */
+  iou: number;
+  /** F1 score (Dice coefficient). */
+  f1: number;
+}
+
+/** Agreement of two observers. Compares two layers with the same classes, weighted by true surface area. The compared surface is the whole surface of the model, or the part that the request selects. Not painted counts as a class. */
+export interface Agreement {
+  /** The compared area, including the area where neither layer is painted. */
+  area_m2: number;
+  /** Share of the compared area where both layers have the same class. */
+  observed: number;
+  /** The same share if the layers had their areas of classes, but were independent of each other. */
+  expected: number;
+  /** Cohen's kappa: (observed - expected) / (1 - expected). It is 1 for equal layers and about 0 for independent ones. Null if both layers have the same single class everywhere. */
+  kappa: number | null;
+  /** Like observed, for the area where at least one layer is painted. Null if there is no such area. */
+  observed_painted: number | null;
+  /** The classes with an area in at least one layer, in ascending order of their keys. Not painted is last. */
+  classes: ClassAgreement[];
+}
+
+/** Areas of each pair of values. The keys are in ascending order. The last key is null, for texels where the layer has no value. */
+export interface CrossTable {
+  rows: (number | null)[];
+  columns: (number | null)[];
+  /** One array for each row, with one number for each column. */
+  area_m2: number[][];
+  texels: number[][];
+  /** Absent if the layers do not have the same classes, or if the compared surface has no area. */
+  agreement?: Agreement;
+}
+
+/** What became of the classes of a layer since another survey. */
+export interface LayerChanges {
+  /** Id of the other model. */
+  since: number;
+  /** Id of the layer of the other model. */
+  layer: number;
+  /** Surface area of the model of the request. */
+  area_m2: number;
+  /** The part of `area_m2` for which the other model has a surface within the tolerance. */
+  matched_m2: number;
+  /** Rows: values in the other survey. Columns: values on the model of the request. Areas of this model, where the other model has a surface. */
+  table: CrossTable;
+  /** Painted areas of this model where the other model has no surface within the tolerance. */
+  unmatched_now: ClassArea[];
+  /** Painted areas of the other model where this model has no surface within the tolerance. */
+  unmatched_then: ClassArea[];
+  /** Pieces of this model. */
+  appeared: ChangedPieces;
+  /** Pieces of the other model. */
+  vanished: ChangedPieces;
 }
 
 /** Layer in a transfer. */
@@ -1899,28 +2071,29 @@ export interface Job {
   look?: number;
   report?: TransferReport;
   cleanup?: CleanupReport;
+  changes?: LayerChanges;
   file?: JobFile;
 }
 
 /** Clean-up of the regions of a layer. */
 export interface Cleanup {
-  /** sieve: regions smaller than `area_cm2` get the value of the neighbor with the longest common border. fill-holes: regions without a value that are smaller than `area_cm2` and enclosed by one value get this value. majority: each texel gets the value with the largest area within `radius_mm`. border: the border of regions is painted as a line that is `width_mm` wide. */
-  operation: "sieve" | "fill-holes" | "majority" | "border";
+  /** sieve: regions smaller than `area_cm2` get the value of the neighbor with the longest common border. fill-holes: regions without a value that are smaller than `area_cm2` and enclosed by one value get this value. majority: each texel gets the value with the largest area within `radius_mm`. border: the border of regions is painted as a line that is `width_mm` wide. open: parts of the regions that are narrower than `width_mm` get the nearest other value, or become unpainted. close: gaps of the regions that are narrower than `width_mm` get the value of the regions, also where they have another value. */
+  operation: "sieve" | "fill-holes" | "majority" | "border" | "open" | "close";
   /** For sieve and fill-holes: regions of this area or larger stay unchanged. */
   area_cm2?: number;
   /** For sieve: true: small regions become unpainted instead. Default: false. */
   erase_regions?: boolean;
-  /** For majority: at most 40 texels of the layer (422). */
+  /** For majority: at most 40 texels of the layer, and less if the layer has many borders (422). */
   radius_mm?: number;
-  /** For border: the width of the line. The line is at least one texel wide. */
+  /** Along the surface. For border: the width of the line, which is at least one texel wide. For open and close: the width of parts and gaps. */
   width_mm?: number;
   /** For border: the layer with the regions, with the same resolution. Default: the layer itself. */
   from?: LayerRef;
-  /** For border: the value of the regions. Default: the borders between all values. */
+  /** For border, open and close: the value of the regions. Default: for border, the borders between all values; for open and close, the only value of the layer (422 if it has several). */
   of?: number;
-  /** For border with `of`: true: the line lies completely inside the regions. false: half of it lies on each side. Default: false. */
+  /** For border with `of`: true: the line is completely inside the regions. false: half of it is on each side. Default: false. */
   inside?: boolean;
-  /** For border: the value of the line. */
+  /** For border without `erase`: the value of the line. */
   value?: number;
   /** For border: true: erase along the line. Default: false. */
   erase?: boolean;
@@ -1944,6 +2117,20 @@ export interface PieceRecords {
   perimeter_column?: string;
   /** false: only count the pieces. Default: true. */
   apply?: boolean;
+}
+
+/** Comparison of a layer with the layer of another survey. */
+export interface LayerChangesRequest {
+  /** Id or slug of the other model, which is usually an earlier survey of the same object. Both models must use the same coordinate system. */
+  since: string;
+  /** Id or slug of the layer of the other model. Default: the layer with the same name. */
+  layer?: string;
+  /** Maximum distance between the two surfaces in millimeters. Places farther from the other surface have no counterpart. */
+  tolerance_mm: number;
+  /** Maximum angle between the two surfaces in degrees. Default: 60. */
+  max_angle?: number;
+  /** Smaller pieces are neither listed nor counted. Default: 0. */
+  min_area_cm2?: number;
 }
 
 /** Transfer of layers from another version of the same scan. */
@@ -2464,16 +2651,23 @@ export interface TableQuantities {
 
 /** Values that are computed from the shape of the model. The response is a job. The layer exists when the job is finished. If unit, palette or description are absent, the server derives them from the recipe. */
 export interface ShapeRecipe {
-  kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "vertex_property";
+  /** change: the signed M3C2 distance (Lague, Brodu and Leroux 2013) since the other model, in mm; level_of_detection: the smallest change that noise and alignment cannot explain, at 95 %, in mm; significant_change: 0 where the change is within the level of detection, 1 for a gain, 2 for a loss of material. */
+  kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "change" | "level_of_detection" | "significant_change" | "vertex_property";
   /** For curvature and roughness, the radius of the neighborhood. Default: the length of four edges of the mesh. */
   radius_mm?: number;
-  /** For ambient occlusion and model distance, the maximum search distance. Default: a quarter of the model's diagonal for ambient occlusion, and a tenth for model distance. */
+  /** For ambient occlusion, model distance and changes, the maximum search distance. Default: a quarter of the model's diagonal for ambient occlusion, and a tenth for the others, but at most 50 projection scales for changes. */
   distance_mm?: number;
+  /** For changes, the diameter of the neighborhood whose mean normal is the direction of measurement. Default: twice the projection scale. */
+  normal_scale_mm?: number;
+  /** For changes, the diameter of the cylinder in which both surfaces are averaged. Default: the length of eight edges of the coarser mesh. */
+  projection_scale_mm?: number;
+  /** For changes, the standard error of the alignment of the two models. Default: 0. */
+  registration_mm?: number;
   /** For ambient occlusion, the number of rays for each point. Default: 64. */
   rays?: number;
   /** For height, true: use the world coordinate instead of the height above the lowest point. Default: false. */
   absolute?: boolean;
-  /** For model distance, the id or slug of the other model. */
+  /** For model distance and changes, the id or slug of the other model. */
   model?: string;
   /** For a vertex property, its name in the PLY file, such as quality. */
   property?: string;
@@ -2521,7 +2715,7 @@ export interface LayerCreate {
   /** For layers of records without `table`, the columns of the new table. Default: one text column, Name. */
   columns?: ColumnCreate[];
   compute?: ShapeRecipe;
-  /** For a computed layer, a formula or a condition. A condition results in the value 1 where it is true and no value elsewhere. The expression can use layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area). */
+  /** For a computed layer, a formula or a condition. A condition results in the value 1 where it is true and no value elsewhere. The expression can use layers, their records, the surface (x, y, z, nx, ny, nz, height, slope, curvature, area), and functions along the surface (distance, within, nearest, focal_mean, focal_min, focal_max, focal_variety). */
   expression?: string;
   /** Only with `expression`. Default: manual. */
   recompute?: Recompute;
@@ -2532,6 +2726,9 @@ export interface Recipe {
   kind: string;
   radius_mm?: number;
   distance_mm?: number;
+  normal_scale_mm?: number;
+  projection_scale_mm?: number;
+  registration_mm?: number;
   tolerance_mm?: number;
   max_angle?: number;
   rays?: number;
@@ -3099,8 +3296,26 @@ export interface PickRequest {
   at?: At;
 }
 
-/** Part of the surface. Either the surface around a point, or the visible surface inside an outline in the window of a camera. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance. */
+/** Surface that looks like the surface at a point. The surface whose color, normal or value differs from that at the point by at most `tolerance`. The value at the point is a mean over 3 × 3 texels. A texel belongs to the selection if its own value or the mean around it is within the tolerance. Keys and values of a categorical palette are not averaged. Texels without a value are similar only to each other. */
+export interface Like {
+  at: SurfacePlace;
+  /** color: the colors of the surface images that are visible by default, over the colors of the vertices. normal: the orientation of the surface. value: the values of `layer`. */
+  by: "color" | "normal" | "value";
+  /** The layer for `value`. */
+  layer?: LayerRef;
+  /** With `color`: use only this surface image, even if it is hidden. */
+  look?: LayerRef;
+  /** color: distance in CIELAB (ΔE of 1976); 2 is hardly visible, and the distance from black to white is 100. normal: angle in degrees. value: difference of values. */
+  tolerance: number;
+  /** true: only surface that is connected to the point through similar surface. false: all similar surface that is connected to the point within `radius_mm`, or the whole similar surface without `radius_mm`. Default: true. */
+  contiguous?: boolean;
+  /** Maximum distance from the point, in a straight line, in millimeters on the object. Default: no limit. */
+  radius_mm?: number;
+}
+
+/** Part of the surface. The surface around a point, the visible surface inside an outline in the window of a camera, the surface that looks like the surface at a point, the surface where a condition is true, a saved selection, or a combination of such parts. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance. Combinations can be nested at most 4 deep and have at most 64 parts that are no combinations, including those of saved selections. */
 export interface Within {
+  like?: Like;
   at?: SurfacePlace;
   /** In millimeters on the object. */
   radius_mm?: number;
@@ -3110,6 +3325,23 @@ export interface Within {
   through?: boolean;
   /** Further outlines, which are combined with the first one in the given order. All outlines together can have at most 16384 points. */
   steps?: OutlineStep[];
+  /** Parts that are combined in the given order. */
+  parts?: WithinPart[];
+  /** A condition over the layers, as in a fill. */
+  where?: string;
+  /** Id or slug of a saved selection of the model. The server uses its definition of the moment of the request. */
+  selection?: LayerRef;
+  /** Adds the surface within this distance of the part. If negative, removes the surface within this distance of the rest of the surface. Distances are measured along the surface, also across seams of the atlas. The edges of the mesh are no borders of the part. */
+  grow_mm?: number;
+  /** After `grow_mm`: first removes the pieces of the part that are narrower than this width, and then closes the gaps that are narrower (morphological opening and closing). */
+  smooth_mm?: number;
+}
+
+/** Step of a combination. A part of the surface, and how it is combined with the parts before it. */
+export interface WithinPart {
+  /** The first part can only be added. Default: "add". */
+  combine?: Combination;
+  within: Within;
 }
 
 /** Image of the selection. The part of the selection that is visible in the window of the camera. */
@@ -3175,15 +3407,6 @@ export interface KeyStatistics {
   pieces?: number;
   /** Length of the borders of these areas along the surface, if requested. */
   perimeter_m?: number;
-}
-
-/** The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Present if requested and if the total area is not 0. */
-export interface Quantiles {
-  p5: number;
-  p25: number;
-  p50: number;
-  p75: number;
-  p95: number;
 }
 
 /** Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values. */
@@ -3275,15 +3498,6 @@ export interface CrossTableRequest {
   at?: At;
 }
 
-/** Areas of each pair of values. The keys are in ascending order. The last key is null, for texels where the layer has no value. */
-export interface CrossTable {
-  rows: (number | null)[];
-  columns: (number | null)[];
-  /** One array for each row, with one number for each column. */
-  area_m2: number[][];
-  texels: number[][];
-}
-
 /** Extent of records on a model. */
 export interface Extent {
   /** Number of requested records. */
@@ -3338,6 +3552,93 @@ export interface FigureLabels {
   column: string;
 }
 
+/** Axis of a rollout. */
+export interface RolloutAxis {
+  /** A point on the axis, in world coordinates. */
+  point: Point3;
+  /** The direction that is up on the sheet. Its length must not be 0. */
+  direction: Point3;
+}
+
+/** Side of a wall. `outside` is seen from around the model, `inside` from the axis. */
+export type RolloutSide = "outside" | "inside";
+
+/** Shape of the surface of a rollout. */
+export type RolloutShape = "cylinder" | "cone";
+
+/** Request for a rollout. A rollout is the surface of a cylinder or cone, unrolled onto a plane without distortion. The server fits all values that are absent. */
+export interface RolloutRequest {
+  /** Required for models without a unique axis, such as spheres. */
+  axis?: RolloutAxis;
+  /** Default: a cone if it fits clearly better. */
+  shape?: RolloutShape;
+  /** Radius at `axis.point`, in units of the model. Only together with `axis`. */
+  radius?: number;
+  /** Angle between the axis and the surface of a cone in degrees, positive if the radius grows along the axis. Only together with `radius`. */
+  half_angle?: number;
+  /** Default: the side with the larger area. */
+  side?: RolloutSide;
+  /** Angle of the cut in degrees, counterclockwise from `zero` of the sheet. Default: the middle of the largest gap of the model, or 180 (the back) if there is no gap. */
+  cut?: number;
+  /** Layers that are not listed have their default settings. */
+  layers?: LayerOverride[];
+  /** The visible surface images from bottom to top. Default: the surface images that are visible by default. */
+  looks?: LookShown[];
+  /** Whether to shade the surface where its direction differs from that of the cylinder or cone. Default: true. */
+  relief?: boolean;
+  at?: At;
+  /** Width of a pixel on the object. Default: a width with which the longer side of the picture has 2000 pixels. A picture can have at most 64 million pixels, and 1 million on one side (413). */
+  mm_per_pixel?: number;
+}
+
+/** Sheet of a rollout. Coordinates and lengths are in units of the model. Angles are in degrees, counterclockwise around the axis when seen against its direction. */
+export interface RolloutSheet {
+  shape: "cylinder" | "cone";
+  side: RolloutSide;
+  /** The direction has the length 1. */
+  axis: RolloutAxis;
+  /** Direction of the angle 0, with the length 1. */
+  zero: Point3;
+  /** At `axis.point`. */
+  radius: number;
+  /** 0 for a cylinder. */
+  half_angle: number;
+  /** The smallest angle on the sheet. */
+  from: number;
+  /** The largest angle on the sheet, at most 360 larger. */
+  to: number;
+  /** x at the left border of the picture. x is 0 in the middle between `from` and `to`. */
+  left: number;
+  /** y at the upper border of the picture. y is 0 at `axis.point`, and grows in the direction of the axis. */
+  top: number;
+  units_per_pixel: number;
+  mm_per_pixel: number;
+  /** In pixels. */
+  width: number;
+  /** In pixels. */
+  height: number;
+  /** Root mean square of the distances of the model from the cylinder or cone. */
+  deviation: number;
+}
+
+/** Rollout in a figure. The members have the same meaning as in `RolloutRequest`. The outline of the surface has rulers: degrees around the axis, from 0 to 360, and lengths along the axis or, for a cone, along the slant. Lengths begin at `axis.point` or, without `axis`, at the lower edge. */
+export interface FigureRollout {
+  /** Required for models without a unique axis, such as spheres. */
+  axis?: RolloutAxis;
+  /** Default: a cone if it fits clearly better. */
+  shape?: RolloutShape;
+  /** Radius at `axis.point`, in units of the model. Only together with `axis`. */
+  radius?: number;
+  /** Angle between the axis and the surface of a cone in degrees, positive if the radius grows along the axis. Only together with `radius`. */
+  half_angle?: number;
+  /** Default: the side with the larger area. */
+  side?: RolloutSide;
+  /** Angle of the cut in degrees, counterclockwise around the axis from the front of the model. Default: the middle of the largest gap of the model, or 180 (the back) if there is no gap. */
+  cut?: number;
+  /** Whether to shade the surface where its direction differs from that of the cylinder or cone. Default: true. */
+  relief?: boolean;
+}
+
 /** Figure to scale. A drawing to scale without perspective, on a sheet with a scale bar, legend and caption. A saved view, or the camera, layers, surface images and light, set its content. They also set the direction if no other member sets it. Without these members, the figure shows the default layers of the model from the top. */
 export interface FigureRequest {
   /** Slug or id of a saved view. */
@@ -3351,6 +3652,8 @@ export interface FigureRequest {
   /** Default: the light mode museum. */
   light?: Light;
   at?: At;
+  /** Unrolls the surface of a cylinder or cone instead of drawing the model from a direction. Not together with `camera`, `light`, `direction`, `normal`, `center` or `labels`. Of a saved view, the figure uses only the layers and surface images. */
+  rollout?: FigureRollout;
   /** A standard direction instead of the direction of the camera or view. */
   direction?: FigureDirection;
   /** A normal in world coordinates, instead of a direction. A surface with this normal is drawn without foreshortening. */
@@ -3486,6 +3789,52 @@ export interface SnapshotPatch {
   text?: string;
 }
 
+/** Users who can see and use a saved selection. personal: only its creator. everyone: all users who can see the model. */
+export type SelectionAudience = "personal" | "everyone";
+
+/** Saved selection of a model. A saved selection stores the definition of a part of the surface, not its texels. The server evaluates the definition with the layers of the moment. */
+export interface SavedSelection {
+  id: number;
+  /** The slug does not change if the selection is renamed. */
+  slug: string;
+  name: string;
+  /** Plain text. */
+  text: string;
+  audience: SelectionAudience;
+  /** Layers, surface images and saved selections are identified by id, except in conditions. Absent if the definition names one that was deleted or that the user who sends the request cannot see. This user cannot use the selection then. */
+  within?: Within;
+  /** User who created the selection. */
+  user: string;
+  /** In UTC (RFC 3339). */
+  time: string;
+  version: number;
+}
+
+/** Saved selections of a model, sorted by time of creation. Contains the selections for everyone, and the personal selections of the user who sends the request. */
+export interface SavedSelectionList {
+  selections: SavedSelection[];
+  total: number;
+}
+
+/** New saved selection. */
+export interface SavedSelectionCreate {
+  name: string;
+  /** Plain text. */
+  text?: string;
+  /** Default: "personal". */
+  audience?: SelectionAudience;
+  within: Within;
+}
+
+/** Changes to a saved selection. */
+export interface SavedSelectionPatch {
+  name?: string;
+  /** Plain text. */
+  text?: string;
+  audience?: SelectionAudience;
+  within?: Within;
+}
+
 export type ClientMessage =
   | Hello
   | CameraUpdate
@@ -3516,6 +3865,7 @@ export type ServerMessage =
   | CommentEvent
   | ViewEvent
   | SnapshotEvent
+  | SelectionEvent
   | Moved
   | DatabaseState
   | Presence
@@ -3539,6 +3889,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "comment",
   "view",
   "snapshot",
+  "selection",
   "moved",
   "database",
   "presence",

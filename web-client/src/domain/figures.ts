@@ -7,6 +7,7 @@ import type {
   FigureFormat,
   FigureLabels,
   FigureRequest,
+  FigureRollout,
   Point3,
 } from "../core/protocol.gen";
 import type { ViewContent } from "./views";
@@ -34,9 +35,10 @@ export type Paper = (typeof kPapers)[number];
 export type Orientation = (typeof kOrientations)[number];
 /**
  * The direction of a figure: the camera of the current or saved view, an axis, or the normal of a
- * picked face.
+ * picked face. A rollout has all directions around an axis.
  */
-export type FigureFrom = "camera" | FigureDirection | "face";
+export type FigureFrom = "camera" | FigureDirection | "face" | "rollout";
+export const kFigureFrom: readonly FigureFrom[] = ["camera", ...kDirections, "face", "rollout"];
 
 /** Options that are kept from one figure to the next. */
 export interface FigureChoices {
@@ -92,7 +94,7 @@ export function figureChoices(kept: unknown): FigureChoices {
   const oneOf = <T>(value: unknown, choices: readonly T[], otherwise: T): T =>
     choices.includes(value as T) ? (value as T) : otherwise;
   return {
-    from: oneOf<FigureFrom>(known["from"], ["camera", ...kDirections, "face"], usual.from),
+    from: oneOf(known["from"], kFigureFrom, usual.from),
     scale: isScale(known["scale"]) ? known["scale"] : usual.scale,
     paper: oneOf(known["paper"], kPapers, usual.paper),
     orientation: oneOf(known["orientation"], [null, ...kOrientations], usual.orientation),
@@ -102,28 +104,45 @@ export function figureChoices(kept: unknown): FigureChoices {
   };
 }
 
-/** Builds the request. Returns null if the user has not picked the required face yet. */
+/** Builds the request. Returns null without the required face or rollout. */
 export function figureRequest(
   shown: FigureShown,
   { from, scale, orientation, ...choices }: FigureChoices,
   words: FigureWords,
   face: Face | null,
   labels: FigureLabels | null,
+  rollout: FigureRollout | null = null,
 ): FigureRequest | null {
-  if (from === "face" && !face) return null;
-  const direction = from === "face" ? face! : from === "camera" ? {} : { direction: from };
+  const content = contentOf(shown, from, face, labels, rollout);
+  if (!content) return null;
   const written = Object.entries(words).flatMap(([name, text]) =>
     text.trim() === "" ? [] : [[name, text.trim()]],
   );
   return {
-    ...shown,
-    ...direction,
+    ...content,
     ...choices,
     ...(scale === null ? {} : { scale }),
     ...(orientation === null ? {} : { orientation }),
     ...(Object.fromEntries(written) as Partial<FigureWords>),
-    ...(labels ? { labels } : {}),
   };
+}
+
+/** Returns what the figure shows and from where. A rollout has neither camera, light nor labels. */
+function contentOf(
+  shown: FigureShown,
+  from: FigureFrom,
+  face: Face | null,
+  labels: FigureLabels | null,
+  rollout: FigureRollout | null,
+): FigureRequest | null {
+  if (from === "rollout") {
+    if (!rollout || "view" in shown) return rollout && { ...shown, rollout };
+    const { layers, looks } = shown;
+    return { ...(layers ? { layers } : {}), ...(looks ? { looks } : {}), rollout };
+  }
+  if (from === "face" && !face) return null;
+  const direction = from === "face" ? face! : from === "camera" ? {} : { direction: from };
+  return { ...shown, ...direction, ...(labels ? { labels } : {}) };
 }
 
 /** Requests the same sheet as a small image. */

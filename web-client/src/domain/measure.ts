@@ -135,3 +135,7 @@ export function ticks(min: number, max: number, most = 5): number[] {
   }
   return found;
 }
+
+/** Returns a share of an area such as "98.2 %", for reports. */
+export const shareText = (part: number, whole: number): string =>
+  whole > 0 ? `${formatNumber((100 * part) / whole, 3)} %` : "–";

@@ -128,6 +128,12 @@ export function purposeOf(layer: Pick<Layer, "kind" | "palette">): LayerPurpose 
   return layer.palette.points.length === 1 ? "presence" : "classes";
 }
 
+/** Returns whether the layer has classes, or records with columns. */
+export const canBeColored = (layer: Layer): boolean =>
+  layer.table !== undefined ||
+  layer.palette.mode === "step" ||
+  (layer.palette.mode === "categorical" && layer.palette.points.length > 0);
+
 // The colors of Okabe and Ito, and two more colors. Users with color blindness can distinguish
 // them.
 export const kClassColors = [

@@ -253,6 +253,7 @@ export class KioskShow {
         saving: nothing,
         applied: nothing,
         snapshot: nothing,
+        selection: nothing,
         saved: nothing,
         takenUp: nothing,
         tool: nothing,

@@ -17,6 +17,8 @@ export class CameraSender {
   /** The number of the last sent camera. The server returns it in frames. */
   seq = 0;
   private _newest: { camera: CameraMessage; moving: boolean } | null = null;
+  private _sent = ""; // the camera of the last message
+  private _sentSince = 0; // the number of the first message with this camera
   private _isScheduled = false;
 
   constructor(private readonly _host: CameraHost) {}
@@ -24,6 +26,15 @@ export class CameraSender {
   set(camera: CameraMessage, moving: boolean): void {
     this._newest = { camera, moving };
     this.schedule();
+  }
+
+  /**
+   * Returns the number of the first message with the current camera. Returns null if a frame with
+   * the number `seq` shows an older camera. A message with an unchanged camera causes no new frame.
+   */
+  numberOf(seq: number): number | null {
+    const isSent = JSON.stringify(this._newest?.camera) === this._sent;
+    return isSent && seq >= this._sentSince ? this._sentSince : null;
   }
 
   forget(): void {
@@ -36,6 +47,8 @@ export class CameraSender {
     const { camera, moving } = this._newest;
     this._newest = { camera, moving: false }; // after a reconnection, the camera is not moving
     this.seq += 1;
+    const sent = JSON.stringify(camera);
+    if (sent !== this._sent) [this._sent, this._sentSince] = [sent, this.seq];
     this._host.send({ op: "camera", seq: this.seq, ...camera, moving });
   }
 

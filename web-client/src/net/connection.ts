@@ -39,6 +39,7 @@ import {
   type RecordEvent,
   type Saved,
   type ServerMessage,
+  type SelectionEvent,
   type SnapshotEvent,
   type TableEvent,
   type ToolEvent,
@@ -71,6 +72,7 @@ export interface ConnectionCallbacks {
   comment(message: CommentEvent): void;
   view(message: ViewEvent): void;
   snapshot(message: SnapshotEvent): void;
+  selection(message: SelectionEvent): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
   /** The server refused a message. A change that is refused permanently is not sent again. */
@@ -186,9 +188,12 @@ export class Connection {
   get full(): boolean {
     return this._outbox.waiting > kMostWaiting;
   }
-  /** The number of the last sent camera. The server returns it in frames. */
-  get cameraSeq(): number {
-    return this._camera.seq;
+  /**
+   * Returns a number of the current camera that only this camera has. Returns null if a frame with
+   * this camera number shows an older camera.
+   */
+  cameraInFrame(seq: number): number | null {
+    return this._camera.numberOf(seq);
   }
 
   open(): void {
@@ -424,6 +429,8 @@ export class Connection {
         return this._callbacks.view(message);
       case "snapshot":
         return this._callbacks.snapshot(message);
+      case "selection":
+        return this._callbacks.selection(message);
       case "presence":
         return this._callbacks.presence(message);
       case "picked":

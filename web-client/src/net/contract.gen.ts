@@ -676,6 +676,26 @@ export interface paths {
         patch: operations["change_layer"];
         trace?: never;
     };
+    "/models/{model}/layers/{layer}/changes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                layer: components["parameters"]["layer"];
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Compare a layer with the layer of another survey */
+        post: operations["compare_layer"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/layers/{layer}/cleanup": {
         parameters: {
             query?: never;
@@ -1323,6 +1343,25 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/rollout": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Unroll a vessel, column or vault */
+        post: operations["rollout"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/section": {
         parameters: {
             query?: never;
@@ -1359,6 +1398,48 @@ export interface paths {
         options?: never;
         head?: never;
         patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/selections": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        /** List the saved selections of a model */
+        get: operations["list_selections"];
+        put?: never;
+        /** Save a selection */
+        post: operations["create_selection"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/selections/{selection}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+                selection: components["parameters"]["selection"];
+            };
+            cookie?: never;
+        };
+        /** Get a saved selection */
+        get: operations["get_selection"];
+        put?: never;
+        post?: never;
+        /** Delete a saved selection */
+        delete: operations["delete_selection"];
+        options?: never;
+        head?: never;
+        /** Change a saved selection */
+        patch: operations["change_selection"];
         trace?: never;
     };
     "/models/{model}/snapshots": {
@@ -1955,6 +2036,26 @@ export interface paths {
         patch: operations["change_object"];
         trace?: never;
     };
+    "/projects/{project}/objects/{object}/statistics": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                object: components["parameters"]["object"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        /** Get the statistics of a layer in all surveys of an object */
+        get: operations["object_statistics"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/projects/{project}/people": {
         parameters: {
             query?: never;
@@ -2512,6 +2613,8 @@ export interface components {
         ActivityKind: wire.ActivityKind;
         /** Activity of a project, newest first */
         ActivityList: wire.ActivityList;
+        /** Agreement of two observers */
+        Agreement: wire.Agreement;
         /** Sequence or time */
         At: wire.At;
         /** Layout of the surface in the texture */
@@ -2573,8 +2676,16 @@ export interface components {
         CellValues: wire.CellValues;
         /** Cells before or after a change */
         ChangedCells: wire.ChangedCells;
+        /** Piece that appeared or vanished */
+        ChangedPiece: wire.ChangedPiece;
+        /** Connected areas of one value that overlap nothing painted in the other survey */
+        ChangedPieces: wire.ChangedPieces;
         /** Changed property */
         ChangedProperty: wire.ChangedProperty;
+        /** Agreement about one class */
+        ClassAgreement: wire.ClassAgreement;
+        /** Area of a value */
+        ClassArea: wire.ClassArea;
         /** Clean-up of the regions of a layer */
         Cleanup: wire.Cleanup;
         /** Result of an operation on the regions of a layer */
@@ -2660,6 +2771,8 @@ export interface components {
         FigureLabels: wire.FigureLabels;
         /** Figure to scale */
         FigureRequest: wire.FigureRequest;
+        /** Rollout in a figure */
+        FigureRollout: wire.FigureRollout;
         /** Request for a rendered image */
         FrameRequest: wire.FrameRequest;
         /** Group of users */
@@ -2729,6 +2842,10 @@ export interface components {
          * @enum {string}
          */
         LayerBlend: wire.LayerBlend;
+        /** What became of the classes of a layer since another survey */
+        LayerChanges: wire.LayerChanges;
+        /** Comparison of a layer with the layer of another survey */
+        LayerChangesRequest: wire.LayerChangesRequest;
         /** New layer */
         LayerCreate: wire.LayerCreate;
         /** Highlighted records of a layer */
@@ -2757,6 +2874,8 @@ export interface components {
          * @enum {string}
          */
         LightMode: wire.LightMode;
+        /** Surface that looks like the surface at a point */
+        Like: wire.Like;
         /** Term with its position in a term list */
         ListedTerm: wire.ListedTerm;
         /** Sign-in */
@@ -2827,6 +2946,8 @@ export interface components {
         ObjectName: wire.ObjectName;
         /** New name of an object */
         ObjectPatch: wire.ObjectPatch;
+        /** Statistics of a layer in the surveys of an object */
+        ObjectStatistics: wire.ObjectStatistics;
         /** Open edges: loops of edges that belong to only one triangle */
         OpenEdges: wire.OpenEdges;
         /** Outline of an area */
@@ -2975,8 +3096,32 @@ export interface components {
          * @enum {string}
          */
         Role: wire.Role;
+        /** Axis of a rollout */
+        RolloutAxis: wire.RolloutAxis;
+        /** Request for a rollout */
+        RolloutRequest: wire.RolloutRequest;
+        /**
+         * Shape of the surface of a rollout
+         * @enum {string}
+         */
+        RolloutShape: wire.RolloutShape;
+        /** Sheet of a rollout */
+        RolloutSheet: wire.RolloutSheet;
+        /**
+         * Side of a wall
+         * @enum {string}
+         */
+        RolloutSide: wire.RolloutSide;
         /** Error in a row */
         RowProblem: wire.RowProblem;
+        /** Saved selection of a model */
+        SavedSelection: wire.SavedSelection;
+        /** New saved selection */
+        SavedSelectionCreate: wire.SavedSelectionCreate;
+        /** Saved selections of a model, sorted by time of creation */
+        SavedSelectionList: wire.SavedSelectionList;
+        /** Changes to a saved selection */
+        SavedSelectionPatch: wire.SavedSelectionPatch;
         /** Unit and up direction proposed for a scan */
         ScaleProposal: wire.ScaleProposal;
         /**
@@ -3008,6 +3153,11 @@ export interface components {
         SelectedLayers: wire.SelectedLayers;
         /** Paint the selection */
         SelectInto: wire.SelectInto;
+        /**
+         * Users who can see and use a saved selection
+         * @enum {string}
+         */
+        SelectionAudience: wire.SelectionAudience;
         /** Image of the selection */
         SelectionPicture: wire.SelectionPicture;
         /** Selection of a part of the surface */
@@ -3059,10 +3209,16 @@ export interface components {
         SurfaceValues: wire.SurfaceValues;
         /** Survey: a model of an object */
         Survey: wire.Survey;
+        /** Area of a class in a survey */
+        SurveyClass: wire.SurveyClass;
         /** Date of a survey */
         SurveyDate: wire.SurveyDate;
         /** Object with its surveys */
         SurveyedObject: wire.SurveyedObject;
+        /** Statistics of a layer in a survey, weighted by surface area */
+        SurveyLayerStatistics: wire.SurveyLayerStatistics;
+        /** Survey with the statistics of a layer */
+        SurveyStatistics: wire.SurveyStatistics;
         /** Table of a project */
         Table: wire.Table;
         /** Areas of records, in total and by model and layer */
@@ -3233,6 +3389,8 @@ export interface components {
         Widths: wire.Widths;
         /** Part of the surface */
         Within: wire.Within;
+        /** Step of a combination */
+        WithinPart: wire.WithinPart;
     };
     responses: {
         BadRequest: {
@@ -3439,6 +3597,7 @@ export interface components {
         offset: number;
         project: string;
         provider: string;
+        selection: string;
         separator: "comma" | "semicolon" | "tab";
         sheet_format: "json" | "csv" | "xlsx";
         snapshot: string;
@@ -3988,9 +4147,11 @@ export interface operations {
                 };
                 content: {
                     "application/pdf": string;
+                    "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet": string;
                     "image/png": string;
                     "image/svg+xml": string;
                     "image/tiff": string;
+                    "text/csv": string;
                 };
             };
         };
@@ -4898,6 +5059,38 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Layer"];
+                };
+            };
+        };
+    };
+    compare_layer: {
+        parameters: {
+            query?: {
+                f?: "json" | "csv" | "xlsx";
+                lang?: components["parameters"]["lang"];
+                separator?: components["parameters"]["separator"];
+            };
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                layer: components["parameters"]["layer"];
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LayerChangesRequest"];
+            };
+        };
+        responses: {
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
                 };
             };
         };
@@ -6059,6 +6252,32 @@ export interface operations {
             };
         };
     };
+    rollout: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RolloutRequest"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RolloutSheet"];
+                    "image/png": string;
+                };
+            };
+        };
+    };
     measure_section: {
         parameters: {
             query?: never;
@@ -6107,6 +6326,136 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["SelectResponse"];
+                };
+            };
+        };
+    };
+    list_selections: {
+        parameters: {
+            query?: {
+                after?: components["parameters"]["after"];
+                limit?: components["parameters"]["limit"];
+                offset?: components["parameters"]["offset"];
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SavedSelectionList"];
+                };
+            };
+        };
+    };
+    create_selection: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SavedSelectionCreate"];
+            };
+        };
+        responses: {
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SavedSelection"];
+                };
+            };
+        };
+    };
+    get_selection: {
+        parameters: {
+            query?: never;
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                selection: components["parameters"]["selection"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SavedSelection"];
+                };
+            };
+        };
+    };
+    delete_selection: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+                "If-Match"?: components["parameters"]["if_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                selection: components["parameters"]["selection"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+        };
+    };
+    change_selection: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+                "If-Match"?: components["parameters"]["if_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                selection: components["parameters"]["selection"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SavedSelectionPatch"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SavedSelection"];
                 };
             };
         };
@@ -7316,6 +7665,40 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["SurveyedObject"];
+                };
+            };
+        };
+    };
+    object_statistics: {
+        parameters: {
+            query: {
+                f?: components["parameters"]["sheet_format"];
+                from?: string;
+                include?: string;
+                lang?: components["parameters"]["lang"];
+                layer: string;
+                separator?: components["parameters"]["separator"];
+                to?: string;
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                object: components["parameters"]["object"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ObjectStatistics"];
+                    "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet": string;
+                    "text/csv": string;
                 };
             };
         };

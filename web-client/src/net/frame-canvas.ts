@@ -1,7 +1,7 @@
 // Draws the parts of streamed frames into a canvas, in order, and reports complete frames. The
 // browser decodes the parts without blocking the page.
 
-import type { FrameMessage } from "./frame-header";
+import type { FrameHeader, FrameMessage } from "./frame-header";
 
 export interface CanvasLike {
   width: number;
@@ -30,6 +30,7 @@ const decodeImage = (part: FrameMessage): Promise<BitmapLike> =>
 export class FrameCanvas {
   private _queue: Promise<void> = Promise.resolve();
   private _generation = 0;
+  private _shown: FrameHeader | null = null;
 
   constructor(
     private readonly _canvas: CanvasLike,
@@ -48,13 +49,21 @@ export class FrameCanvas {
     this._queue = this._queue.then(async () => {
       try {
         const bitmap = await decoded;
-        if (generation === this._generation) this.draw(part, bitmap);
+        if (generation === this._generation) {
+          this.draw(part, bitmap);
+          if (part.header.last) this._shown = part.header;
+        }
         bitmap.close();
       } catch (error) {
         if (generation === this._generation) this._callbacks.failed(String(error));
       }
       if (generation === this._generation && part.header.last) this._callbacks.drawn(part);
     });
+  }
+
+  /** The header of the last complete frame on the canvas. */
+  get shown(): FrameHeader | null {
+    return this._shown;
   }
 
   /** Discards pending parts, because their connection was lost. */

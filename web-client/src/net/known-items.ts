@@ -3,7 +3,7 @@
 
 import { ApiError } from "./api-error";
 
-interface Item {
+export interface Item {
   readonly id: number;
   readonly version: number;
 }

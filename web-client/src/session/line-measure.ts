@@ -13,6 +13,8 @@ export interface LineMeasureHost<Step> {
   changed(): void;
 }
 
+type MeasuredOutline = Pick<Outline, "points" | "edge" | "pointer">;
+
 /** A part of the line. It begins at the end of the previous part. */
 interface Part<Step> {
   path: readonly Point[];
@@ -26,7 +28,7 @@ export class LineMeasure<Step> {
    */
   metres: number | null = null;
 
-  private _line: Pick<Outline, "points" | "pointer"> | null = null;
+  private _line: MeasuredOutline | null = null;
   private _due = false; // the line has changed since `metres` was computed
   private _known: Part<Step>[] = [];
   private _asking = false;
@@ -36,8 +38,8 @@ export class LineMeasure<Step> {
   constructor(private readonly _host: LineMeasureHost<Step>) {}
 
   /** Sets the current path of the line. Null means that there is no line. */
-  follow(line: Pick<Outline, "points" | "pointer"> | null): void {
-    this._line = line && { points: [...line.points], pointer: line.pointer };
+  follow(line: MeasuredOutline | null): void {
+    this._line = line && { ...line, points: [...line.points] };
     this._due = line !== null;
     if (line) {
       this.ask();
@@ -50,13 +52,13 @@ export class LineMeasure<Step> {
 
   private ask(): void {
     if (!this._line || !this._due || this._asking || this._timer) return;
-    const { points, pointer } = this._line;
+    const { points, edge = [], pointer } = this._line;
     const known = this.keepKnown(points);
     if (known < points.length - 1) {
       void this.learn(points.slice(known), true);
     } else {
       this._due = false;
-      if (pointer) void this.learn([points[known]!, pointer], false);
+      if (pointer) void this.learn([points[known]!, ...edge, pointer], false);
       else this.tell([]);
     }
   }

@@ -23,6 +23,8 @@ import type { MarkDrawing } from "../features/records/mark-drawing";
 import type { Measuring } from "../features/measuring/measuring";
 import type { FrameMessage } from "../net/frame-header";
 import type { Painting } from "../features/painting/painting";
+import type { SavedSelections } from "../features/painting/saved-selections";
+import type { Selection } from "../features/painting/selection";
 import type { Past } from "../features/past/past";
 import type { Visits } from "../features/past/visits";
 import type { PeopleCursors } from "../features/presence/people-cursors";
@@ -91,6 +93,9 @@ export interface ModelSession {
   readonly appearance: Appearance;
   readonly pointer: PointerWatch;
   readonly painting: Painting;
+  /** The selection of polygon, lasso and wand; null until it is loaded. */
+  selection: Selection | null;
+  savedSelections: SavedSelections | null; // made at its first use
   readonly past: Past;
   readonly visits: Visits;
   readonly shapes: ToolShapes;

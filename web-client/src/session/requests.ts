@@ -28,4 +28,16 @@ export type TourRequest =
 export interface ViewRequest {
   dialog: "view" | "figure";
   view: View | null;
+  /** The figure dialog opens with the rollout of the last dialog. */
+  unrolled?: true;
+}
+
+/** The dialogs of the selection. */
+export interface SelectionRequest {
+  dialog: "selections" | "save-selection" | "selection-statistics";
+}
+
+/** The dialog that unrolls the model. */
+export interface RolloutDialogRequest {
+  dialog: "rollout";
 }

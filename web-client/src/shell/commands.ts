@@ -2,7 +2,7 @@
 // later.
 
 import { kStandardViews } from "../math/view-cube";
-import { hasOptions, kChangingTools, kRailTools } from "../tools/tool";
+import { hasOptions, kChangingTools, kRailTools, kSnappingTools } from "../tools/tool";
 import type { ModelSession } from "../session/model-session";
 import { kCommandKeys, keyCapsOf, type KeyedCommand } from "../ui/keys/command-keys";
 import { texts } from "../texts";
@@ -52,6 +52,11 @@ export function keyCommands(host: PageHost): Command[] {
           : session.chooseTool(tool),
     }),
   );
+  const snap = (): void => {
+    const isActive = kSnappingTools.includes(session.tools.active);
+    session.painting.setBrush((brush) => (brush.snaps = !isActive || !brush.snaps));
+    if (!isActive) session.chooseTool("polygon");
+  };
   const edit = { group: words.edit };
   const seen = { group: texts.view.title };
   const window = { group: texts.model.panel };
@@ -69,6 +74,13 @@ export function keyCommands(host: PageHost): Command[] {
   const noViews = session.views.all.length > 0 ? undefined : texts.kept_views.none;
   return [
     ...tools,
+    command("polygon.snap", {
+      group: texts.model.tools,
+      title: `${texts.tools.polygon}: ${texts.areas.snaps}`,
+      glyph: "polygon",
+      problem: changing,
+      run: snap,
+    }),
     command("undo", {
       ...edit,
       title: texts.model.undo,

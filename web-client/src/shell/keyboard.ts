@@ -24,7 +24,7 @@ export function handleKey(event: KeyboardEvent, host: PageHost): boolean {
   const key = keyOf(event);
   if (key === null) return false;
   const isPlain = !key.startsWith("Ctrl+");
-  if (isPlain && host.session.tools.key(event.key)) return true;
+  if (isPlain && host.session.tools.key(event.key, event.shiftKey)) return true;
   const commands = keyCommands(host);
   const run = (name: string): boolean | null => {
     const found = commands.find(({ keys }) => keys?.includes(name));

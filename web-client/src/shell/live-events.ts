@@ -58,6 +58,10 @@ export function eventsOfParts(session: ModelSession): EventsOfParts {
       session.past.onSnapshot();
       session.activity.outdated(event.user);
     },
+    selection: (event) => {
+      session.savedSelections?.onEvent(event);
+      session.activity.outdated(event.user);
+    },
     editors: (message) => session.editors.onMessage(message),
     presence: ({ users }) => {
       session.together.receive(users);

@@ -11,20 +11,26 @@ import { LineTool } from "../features/records/line-tool";
 import { MeasureTool } from "../features/measuring/measure-tool";
 import { PartTool } from "../features/past/part-tool";
 import { OrbitTool, PanTool } from "../tools/navigate";
-import { LassoTool, PolygonTool } from "../tools/outline";
+import { LassoTool, PolygonTool, type EdgeSnapping } from "../tools/outline";
 import { PickTool } from "../features/painting/pick-tool";
+import type { Selection } from "../features/painting/selection";
+import { WandTool } from "../features/painting/wand-tool";
 import { PointTool } from "../features/records/point-tool";
 import type { Tool, ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 
-export interface ToolChanges {
+export interface ToolHost {
+  /** Uses the selection of polygon, lasso and wand, after it is loaded. */
+  withSelection(use: (selection: Selection) => void): void;
+  /** Returns null until it is loaded. */
+  edges(): EdgeSnapping | null;
   /** Another tool was activated. */
   chosen(name: ToolName): void;
   /** The outline of the active tool has changed. */
   outline(): void;
 }
 
-export function makeTools(session: ModelSession, changes: ToolChanges): ToolManager {
+export function makeTools(session: ModelSession, host: ToolHost): ToolManager {
   const brushHost = {
     beginStroke: (erase: boolean) => session.painting.beginStroke(erase),
     strokeEnded: () => session.painting.strokeEnded(),
@@ -33,6 +39,10 @@ export function makeTools(session: ModelSession, changes: ToolChanges): ToolMana
     nextFrame: (callback: () => void) => void requestAnimationFrame(callback),
   };
   const comment = (sample: PointerSample): void => void session.comments.begin(sample);
+  const middle = (): PointerSample => ({
+    x: session.view.camera.width / 2,
+    y: session.view.camera.height / 2,
+  });
   const navigator = {
     orbit: (dx: number, dy: number) => session.view.orbitPixels(dx, dy),
     pan: (dx: number, dy: number) => session.view.panPixels(dx, dy),
@@ -61,8 +71,14 @@ export function makeTools(session: ModelSession, changes: ToolChanges): ToolMana
       session.painting.finishOutline(path, corners),
     outlineEnded: () => session.painting.strokeEnded(),
     scale: () => session.view.scale,
-    outlineChanged: () => changes.outline(),
-    selection: session.painting.area,
+    outlineChanged: () => host.outline(),
+    edges: () => (session.painting.brush.snaps ? host.edges() : null),
+    selection: {
+      grab: (at: PointerSample) => session.selection?.grab(at) ?? false,
+      drag: (to: PointerSample) => session.selection?.drag(to),
+      release: (keep: boolean) => session.selection?.release(keep),
+      key: (key: string) => session.selection?.key(key) ?? false,
+    },
   };
   const partHost = {
     ...outlineHost,
@@ -74,11 +90,12 @@ export function makeTools(session: ModelSession, changes: ToolChanges): ToolMana
   const lineHost = {
     scale: outlineHost.scale,
     outlineEnded: outlineHost.outlineEnded,
+    edges: outlineHost.edges,
     beginOutline: () => session.marks.beginLine(),
     finishOutline: (path: Point[]) => session.marks.finishLine(path),
     outlineChanged: () => {
       session.marks.lineChanged(session.tools.outline);
-      changes.outline();
+      host.outline();
     },
   };
   const tools: Readonly<Record<ToolName, Tool>> = {
@@ -89,16 +106,20 @@ export function makeTools(session: ModelSession, changes: ToolChanges): ToolMana
     polygon: new PolygonTool(outlineHost),
     lasso: new LassoTool(outlineHost),
     bucket: new BucketTool((sample) => session.painting.fillAt(sample)),
+    wand: new WandTool({
+      orbit: navigator.orbit,
+      pan: navigator.pan,
+      selectAt: (at) => host.withSelection((selection) => selection.addSimilar([at.x, at.y], at)),
+      middle,
+      selectionKey: outlineHost.selection.key,
+    }),
     pick: new PickTool((sample) => session.pointer.take(sample)),
     line: new LineTool(lineHost),
     point: new PointTool((sample) => session.marks.setPoint(sample)),
     measure: new MeasureTool(measureHost),
     face: new FaceTool(faceHost),
     part: new PartTool(partHost),
-    comment: new CommentTool({ ...navigator, tap: comment }, () => ({
-      x: session.view.camera.width / 2,
-      y: session.view.camera.height / 2,
-    })),
+    comment: new CommentTool({ ...navigator, tap: comment }, middle),
   };
-  return new ToolManager(Object.values(tools), "orbit", (name) => changes.chosen(name));
+  return new ToolManager(Object.values(tools), "orbit", (name) => host.chosen(name));
 }

@@ -1,4 +1,4 @@
-// The dialogs of the model page. They are a separate part (`page-parts.ts`), so the page is shown
+// The dialogs and the selection of the model page. They are a separate part (`page-parts.ts`), so the page is shown
 // before they are loaded.
 
 import "../features/layers/cleanup-dialog";
@@ -7,6 +7,7 @@ import "../features/tables/column-dialog";
 import "../features/tables/csv-dialog";
 import "../features/records/delete-record-dialog";
 import "../features/figures/figure-dialog";
+import "../features/figures/rollout-dialog";
 import "../features/account/kiosks-dialog";
 import "../features/layers/layer-dialog";
 import "../features/layers/map-dialog";
@@ -15,6 +16,7 @@ import "../features/layers/pieces-dialog";
 import "../features/records/photos-dialog";
 import "../features/records/record-dialog";
 import "../features/home/scale-dialog";
+import "../features/surveys/changes-dialog";
 import "./command-palette";
 import "./help-dialog";
 import "./model-details";
@@ -25,5 +27,15 @@ import "../features/tours/tour-dialog";
 import "../features/layers/transfer-dialog";
 import "../features/views/view-dialog";
 import "../features/layers/where-dialog";
+import "../features/painting/save-selection-dialog";
+import "../features/painting/selection-bar";
+import "../features/painting/selection-panel";
+import "../features/painting/selection-statistics";
+import "../features/painting/selections-dialog";
+import "../features/painting/wand-panel";
 
+export { EdgeSnapper } from "../features/painting/edge-snapper";
+export { sharpFrames } from "../features/painting/sharp-frame";
+export { selectionOf } from "../features/painting/selection-of";
+export { selectionOverlay } from "../features/painting/selection-overlay";
 export { modelDialog } from "./open-dialog";

@@ -48,7 +48,7 @@ import "./stage";
 import type { StrataStage } from "./stage";
 import { styled } from "../ui/styled";
 import { sharedStyles } from "../ui/styles";
-import type { TablePanelRequest } from "../session/requests";
+import type { SelectionRequest, TablePanelRequest } from "../session/requests";
 import "../features/tours/tour-list";
 import "../features/views/view-list";
 import type { TableView } from "../features/tables/table-view";
@@ -61,7 +61,7 @@ import type { TourRequest } from "../session/requests";
 import "../features/painting/value-readout";
 import { wantsLessMotion } from "../session/view-control";
 import { dropColumn } from "../features/tables/drop-column";
-import type { ViewRequest } from "../session/requests";
+import type { RolloutDialogRequest, ViewRequest } from "../session/requests";
 import { Splitter } from "./splitter";
 import { PanelTabs, type PanelTab } from "./panel-tabs";
 import { tabId, tabListStyles } from "../ui/panel/tab-list";
@@ -338,7 +338,7 @@ export class StrataModelPage extends LitElement {
           <strata-tool-rail role="toolbar" aria-label=${texts.model.tools} .session=${session}></strata-tool-rail>
         </section>
         <main>
-          <strata-stage .session=${session}></strata-stage>
+          <strata-stage .session=${session} @request=${(event: CustomEvent<SelectionRequest>) => (this._dialog = event.detail)}></strata-stage>
           ${session.past.isOpen && hasPart("past", this) ? html`<strata-past-overlay .session=${session}></strata-past-overlay>` : nothing}
           ${this.surveys(session)}
           <strata-together-bar .session=${session}></strata-together-bar>
@@ -375,7 +375,7 @@ export class StrataModelPage extends LitElement {
     if (window.innerWidth <= kNarrow) this._panelShown = false;
   }
 
-  private onViewRequest(request: ViewRequest | TourRequest): void {
+  private onViewRequest(request: ViewRequest | TourRequest | RolloutDialogRequest): void {
     if (request.dialog === "tour") this._tourEditor ??= { tour: request.tour };
     else this._dialog = request;
   }
@@ -446,7 +446,7 @@ export class StrataModelPage extends LitElement {
         ? html`<strata-survey-overlay .session=${session} ?hidden=${past.isActive}></strata-survey-overlay>`
         : nothing
     }
-      <strata-survey-bar .session=${session}></strata-survey-bar>`;
+      <strata-survey-bar .session=${session} @request=${(event: CustomEvent<OpenDialog>) => (this._dialog = event.detail)}></strata-survey-bar>`;
   }
 
   private history(session: OpenModelSession): TemplateResult | typeof nothing {
@@ -482,7 +482,7 @@ export class StrataModelPage extends LitElement {
           <strata-view-panel
             .session=${session}
             @orthophoto=${() => (this._dialog = { dialog: "orthophoto" })}
-            @request=${(event: CustomEvent<ViewRequest | TourRequest>) => this.onViewRequest(event.detail)}
+            @request=${(event: CustomEvent<ViewRequest | TourRequest | RolloutDialogRequest>) => this.onViewRequest(event.detail)}
           ></strata-view-panel>
         </section>`;
       case "comments":
@@ -498,11 +498,13 @@ export class StrataModelPage extends LitElement {
   /** Shows the layers, and above them the options of the active tool. */
   private layers(session: OpenModelSession): TemplateResult {
     const { active } = session.tools;
-    const request = (event: CustomEvent<LayerPanelRequest | WhereRequest>): void => {
+    const request = (
+      event: CustomEvent<LayerPanelRequest | WhereRequest | SelectionRequest>,
+    ): void => {
       this._dialog = event.detail;
     };
     return html`${active === "measure" && hasPart("measuring", this) ? html`<section class="options"><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
-      ${paints(active) ? html`<section class="options"><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
+      ${active === "wand" && !session.lockedTarget && hasPart("model_dialogs", this) ? html`<section class="options"><strata-wand-panel .session=${session} @request=${request}></strata-wand-panel></section>` : paints(active) ? html`<section class="options"><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
       <section><strata-layer-panel .session=${session} @request=${request}></strata-layer-panel></section>`;
   }
 

@@ -1,10 +1,10 @@
 // The commands without keys: for the model's content, and for the dialogs of the page.
 
 import { labelOf } from "../domain/cells";
+import { canBeColored } from "../domain/palette";
 import { called } from "../domain/people";
 import { mayAdminister } from "../core/types";
 import { kCuts, kLightModes } from "../features/appearance/appearance";
-import { canBeColored } from "../features/layers/color-dialog";
 import { texts } from "../texts";
 import type { IconName } from "../ui/icons";
 import { navigate } from "../ui/routes";
@@ -227,6 +227,7 @@ function ofModel(host: PageHost): Command[] {
   const group = model.name;
   return [
     opening(host, group, "info", texts.model.details, { dialog: "about" }),
+    opening(host, texts.figures.title, "document", texts.figures.unroll, { dialog: "rollout" }),
     ...(session.canCurate
       ? [opening(host, group, "measure", texts.model.correct_size, { dialog: "scale" })]
       : []),

@@ -7,7 +7,13 @@ import type { Layer, Me, Model } from "../core/types";
 import type { LayerPanelRequest } from "../features/layers/layer-panel";
 import type { WhereRequest } from "../features/painting/brush-panel";
 import type { ModelSession } from "../session/model-session";
-import type { TablePanelRequest, TourRequest, ViewRequest } from "../session/requests";
+import type {
+  RolloutDialogRequest,
+  SelectionRequest,
+  TablePanelRequest,
+  TourRequest,
+  ViewRequest,
+} from "../session/requests";
 import type { AccountRequest } from "../ui/account-menu";
 import type { PanelTab } from "./panel-tabs";
 
@@ -15,9 +21,11 @@ export type OpenDialog =
   | LayerPanelRequest
   | TablePanelRequest
   | ViewRequest
+  | RolloutDialogRequest
   | WhereRequest
+  | SelectionRequest
   | Extract<TourRequest, { dialog: "kiosks" }>
-  | { dialog: "scale" | "help" | "about" | "orthophoto" | "commands" };
+  | { dialog: "scale" | "help" | "about" | "orthophoto" | "commands" | "changes" };
 
 /** The interface of the page for its commands and dialogs. */
 export interface PageHost {
@@ -108,16 +116,25 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
         .layer=${newest(session, dialog.layer)}
         @closed=${closed}
       ></strata-map-dialog>`;
+    case "changes":
+      return html`<strata-changes-dialog .session=${session} @closed=${closed}></strata-changes-dialog>`;
     case "view":
       return html`<strata-view-dialog .session=${session} .view=${dialog.view} @closed=${closed}></strata-view-dialog>`;
     case "figure":
       return html`<strata-figure-dialog
         .session=${session}
         .view=${dialog.view}
+        .unrolled=${dialog.unrolled ?? false}
         @aside=${host.aside}
         @correct=${() => host.show({ dialog: "scale" })}
         @closed=${closed}
       ></strata-figure-dialog>`;
+    case "rollout":
+      return html`<strata-rollout-dialog
+        .session=${session}
+        @figure=${() => host.show({ dialog: "figure", view: null, unrolled: true })}
+        @closed=${closed}
+      ></strata-rollout-dialog>`;
     case "kiosks":
       return session.model
         ? html`<strata-kiosks-dialog
@@ -127,6 +144,16 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
             @signed-out=${() => host.signedOut()}
           ></strata-kiosks-dialog>`
         : nothing;
+    case "selections":
+      return html`<strata-selections-dialog
+        .session=${session}
+        @request=${(event: CustomEvent<SelectionRequest>) => host.show(event.detail)}
+        @closed=${closed}
+      ></strata-selections-dialog>`;
+    case "save-selection":
+      return html`<strata-save-selection-dialog .session=${session} @closed=${closed}></strata-save-selection-dialog>`;
+    case "selection-statistics":
+      return html`<strata-selection-statistics .session=${session} @closed=${closed}></strata-selection-statistics>`;
     case "orthophoto":
       return html`<strata-orthophoto-dialog .session=${session} @closed=${closed}></strata-orthophoto-dialog>`;
     case "scale":

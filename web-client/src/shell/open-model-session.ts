@@ -29,7 +29,12 @@ import {
 } from "../core/types";
 import { OfflineQueue } from "../net/offline-queue";
 import { Activities } from "../features/activity/activity";
-import { kChangingTools, kMarkingTools, kSelectingTools, type ToolName } from "../tools/tool";
+import {
+  kChangingTools,
+  kMarkingTools,
+  kSelectionKeepingTools,
+  type ToolName,
+} from "../tools/tool";
 import type { ToolManager } from "../tools/tool-manager";
 import { EditableModel, type ModelScale } from "../session/editable-model";
 import { Appearance } from "../features/appearance/appearance";
@@ -44,6 +49,10 @@ import { MarkDrawing } from "../features/records/mark-drawing";
 import { Measuring } from "../features/measuring/measuring";
 import { notices } from "../ui/notices";
 import { Painting } from "../features/painting/painting";
+import type { EdgeSnapper } from "../features/painting/edge-snapper";
+import type { SavedSelections } from "../features/painting/saved-selections";
+import type { Selection } from "../features/painting/selection";
+import type { sharpFrames, ShownFrame } from "../features/painting/sharp-frame";
 import { Past } from "../features/past/past";
 import { Visits } from "../features/past/visits";
 import { PeopleCursors } from "../features/presence/people-cursors";
@@ -66,6 +75,14 @@ import type { ModelSession, SessionPart } from "../session/model-session";
 import { Signals } from "../session/signals";
 import { eventsOfParts } from "./live-events";
 import { makeTools } from "./make-tools";
+import { partOf, withPart } from "./page-parts";
+
+/** The exports of a later part that make the selection and follow edges. */
+interface SelectionPart {
+  selectionOf(session: ModelSession): Selection;
+  EdgeSnapper: typeof EdgeSnapper;
+  sharpFrames: typeof sharpFrames;
+}
 
 export class OpenModelSession implements ModelSession {
   deleted = false;
@@ -104,9 +121,12 @@ export class OpenModelSession implements ModelSession {
   readonly figures: Figures;
   readonly face: FacePick;
   readonly tools: ToolManager;
+  selection: Selection | null = null;
+  savedSelections: SavedSelections | null = null;
   /** The stage sets these callbacks. */
   onFrame: (part: FrameMessage) => void = () => {};
   onResetFrames: () => void = () => {};
+  shownFrame: () => ShownFrame | null = () => null;
 
   private readonly _connection: Connection;
   private readonly _sight: RecordSight;
@@ -118,6 +138,7 @@ export class OpenModelSession implements ModelSession {
   private _toldLeft = false;
   // a frame of the second view without an acknowledgment
   private _thenWithoutAck: number | null = null;
+  private _edges: EdgeSnapper | null = null;
 
   constructor(
     readonly api: Api,
@@ -135,6 +156,10 @@ export class OpenModelSession implements ModelSession {
       },
     });
     const changes = (part: SessionPart) => (): void => this.changed(part);
+    const withSelection = (use: (selection: Selection) => void): void => {
+      if (this.selection) use(this.selection);
+      else withPart<SelectionPart>("model_dialogs", ({ selectionOf }) => use(selectionOf(this)));
+    };
     this.view = new ViewControl({
       send: (moving) => {
         this.hovered.waitAgain();
@@ -204,7 +229,8 @@ export class OpenModelSession implements ModelSession {
       view: this.view,
       layers: this.layers,
       pointer: this.pointer,
-      lit: this.lit,
+      selection: () => this.selection,
+      withSelection,
       model: () => this.model,
       records: {
         label: (table, key) => this.tables.label(table, key),
@@ -351,10 +377,12 @@ export class OpenModelSession implements ModelSession {
     });
     this.tools = makeTools(this, {
       chosen: (name) => {
-        if (!kSelectingTools.includes(name)) this.painting.area.clear();
+        if (!kSelectionKeepingTools.includes(name)) this.selection?.clear();
         this.targetChanged("tools");
       },
       outline: () => this.changed("tools"),
+      edges: () => this.edges,
+      withSelection,
     });
   }
 
@@ -374,6 +402,21 @@ export class OpenModelSession implements ModelSession {
     freeMouse: (sample) => this.hovered.move(sample),
     toolIsForPen: () => kChangingTools.includes(this.tools.active),
   };
+
+  /** Follows edges in the shown frame. Null until its part of the page is loaded. */
+  private get edges(): EdgeSnapper | null {
+    const part = partOf("model_dialogs") as SelectionPart | undefined;
+    if (!part) return null;
+    return (this._edges ??= new part.EdgeSnapper({
+      frame: part.sharpFrames(
+        () => this.shownFrame(),
+        (seq) => this._connection.cameraInFrame(seq),
+      ),
+      window: () => this.view.camera,
+      scale: () => this.view.scale,
+      nowMs: () => performance.now(),
+    }));
+  }
 
   private makeConnection(makeSocket?: (url: string, protocol: string) => SocketLike): Connection {
     const { protocol, host } = window.location;
@@ -429,6 +472,7 @@ export class OpenModelSession implements ModelSession {
     this._closed = true;
     this.layers.flush();
     this.tools.stop();
+    this.selection?.clear();
     this.view.stop();
     this.lit.stop();
     this.pointer.stop();
@@ -443,6 +487,7 @@ export class OpenModelSession implements ModelSession {
     this.tables.close();
     this._signals.clear();
     this.onFrame = this.onResetFrames = () => {};
+    this.shownFrame = () => null;
     if (this.saving.waiting === 0) {
       this.discard();
       return;

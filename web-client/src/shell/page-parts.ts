@@ -51,19 +51,19 @@ function load(part: PagePart): Promise<void> {
  */
 export function hasPart(part: PagePart, host: { requestUpdate(): void }): boolean {
   if (here.has(part)) return true;
-  load(part).then(
-    () => host.requestUpdate(),
-    () => {
-      const link = { label: texts.connection.reload, act: () => location.reload() };
-      notices.show(
-        "problem",
-        texts.connection.part_missing,
-        texts.connection.part_missing_hint,
-        link,
-      );
-    },
-  );
+  load(part).then(() => host.requestUpdate(), tellMissing);
   return false;
+}
+
+/** Uses the exports of a part, immediately or after the part is loaded. */
+export function withPart<Exports>(part: PagePart, use: (exports: Exports) => void): void {
+  if (here.has(part)) use(here.get(part) as Exports);
+  else load(part).then(() => use(here.get(part) as Exports), tellMissing);
+}
+
+function tellMissing(): void {
+  const link = { label: texts.connection.reload, act: () => location.reload() };
+  notices.show("problem", texts.connection.part_missing, texts.connection.part_missing_hint, link);
 }
 
 /** Returns the exports of a loaded part. */

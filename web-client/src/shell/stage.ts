@@ -12,10 +12,11 @@ import { followSession } from "../session/follow-session";
 import type { OpenModelSession } from "./open-model-session";
 import { measureOverlay } from "../features/measuring/measure-overlay";
 import { notices } from "../ui/notices";
+import { hasPart, partOf } from "./page-parts";
 import { onTheme, stageBackground } from "../ui/preferences";
-import { outlineOverlay, selectionOverlay } from "../features/painting/outline-overlay";
-import "../features/painting/selection-bar";
+import { outlineOverlay } from "../features/painting/outline-overlay";
 import "../features/presence/people-overlay";
+import { kSelectingTools } from "../tools/tool";
 import { styled } from "../ui/styled";
 import { sharedStyles } from "../ui/styles";
 import { texts } from "../texts";
@@ -187,6 +188,10 @@ export class StrataStage extends LitElement {
     });
     this.session.onFrame = (part) => this._frames?.push(part);
     this.session.onResetFrames = () => this._frames?.reset();
+    this.session.shownFrame = () => {
+      const header = this._frames?.shown;
+      return header ? { canvas: this._canvas, header } : null;
+    };
     this._input = new StageInput(
       this._surface,
       this.session.gestures,
@@ -234,13 +239,15 @@ export class StrataStage extends LitElement {
 
   override render(): TemplateResult {
     const { session } = this;
-    const tool = session.tools.active;
+    const { active: tool, outline } = session.tools;
     const locked = session.lockedTarget !== null;
     const paints = !locked && (tool === "brush" || tool === "eraser");
+    const selects = kSelectingTools.includes(tool) && hasPart("model_dialogs", this);
     const aims =
       tool === "polygon" ||
       tool === "lasso" ||
       tool === "bucket" ||
+      tool === "wand" ||
       tool === "pick" ||
       tool === "line" ||
       tool === "point" ||
@@ -257,11 +264,11 @@ export class StrataStage extends LitElement {
         <canvas width="2" height="2"></canvas>
         ${this.litArea()}
         ${paints ? this.brushCursor() : nothing}
-        ${selectionOverlay(session)}
-        ${session.tools.outline ? outlineOverlay(session, session.tools.outline) : nothing}
+        ${this.selectionOutlines()}
+        ${outline ? outlineOverlay(session, outline) : nothing}
         ${tool === "measure" ? measureOverlay(session) : nothing}
       </div>
-      <strata-selection-bar .session=${session}></strata-selection-bar>
+      ${selects ? html`<strata-selection-bar .session=${session}></strata-selection-bar>` : nothing}
       <strata-people-overlay .session=${session}></strata-people-overlay>
       ${this.scaleBar()}
       ${
@@ -269,6 +276,13 @@ export class StrataStage extends LitElement {
           ? html`<div class="waiting" role="status">${texts.model.waiting_for_picture}</div>`
           : nothing
       }`;
+  }
+
+  private selectionOutlines(): TemplateResult | typeof nothing {
+    const { selection } = this.session;
+    if (!selection || selection.isEmpty) return nothing;
+    const { selectionOverlay } = partOf("model_dialogs") as typeof import("./model-dialogs");
+    return selectionOverlay(selection, this.session.view.scale);
   }
 
   /** Draws hatching over the highlighted part of the surface. */

@@ -432,6 +432,7 @@ export const texts = {
     polygon: "Polygon",
     lasso: "Lasso",
     bucket: "Zusammenhängend füllen",
+    wand: "Zauberstab",
     pick: "Wert aufnehmen",
     line: "Linie",
     point: "Punkt",
@@ -629,6 +630,7 @@ export const texts = {
     paints: "Malen",
     erases: "Radieren",
     through: "Auch verdeckte Flächen bemalen",
+    snaps: "An Kanten ausrichten",
     reach: "Ausdehnung",
     connected: "Gleicher Wert",
     connected_hint:
@@ -644,34 +646,6 @@ export const texts = {
     condition: "Bedingung",
     apply: "Füllen",
     apply_erase: "Radieren",
-  },
-
-  selection: {
-    title: "Auswahl",
-    keys: "Eingabe füllt die Auswahl, Esc verwirft sie. Umschalt fügt einen Umriss hinzu, Alt zieht einen ab, beide bilden die Schnittmenge.",
-    measuring: "Wird gemessen …",
-    nothing: "Nichts ausgewählt",
-    share: (share) => `${share} der Oberfläche`,
-    elsewhere: (n) =>
-      count(n, "Umriss ist aus einer anderen Ansicht", "Umrisse sind aus einer anderen Ansicht"),
-    mode: "Nächster Umriss",
-    modes: { replace: "Neu", add: "Hinzufügen", subtract: "Abziehen", intersect: "Schnittmenge" },
-    mode_hints: {
-      replace: "Ersetzt die Auswahl",
-      add: "Fügt zur Auswahl hinzu (Umschalt)",
-      subtract: "Zieht von der Auswahl ab (Alt)",
-      intersect: "Behält, was beide gemeinsam haben (Umschalt + Alt)",
-    },
-    delete_corner: "Eckpunkt löschen",
-    fill: "Füllen",
-    erase: "Löschen",
-    discard: "Auswahl verwerfen",
-    full: (n) => `Eine Auswahl kann höchstens ${n} Umrisse haben. Füllen oder verwerfen Sie sie.`,
-    in_layer: (layer) => `In ${layer}`,
-    painted: "kartiert",
-    mean: "Mittelwert",
-    lowest: "kleinster Wert",
-    highest: "größter Wert",
   },
 
   maps: {
@@ -870,6 +844,7 @@ export const texts = {
       form: "Form und Relief",
       place: "Lage und Richtung",
       distance: "Abstände",
+      change: "Veränderung zwischen Aufnahmen",
       file: "Aus der Datei des Scans",
     },
     kinds: {
@@ -914,15 +889,42 @@ export const texts = {
         title: "Abstand zu einem anderen Modell",
         lead: "Positiv, wo Material hinzukam, negativ, wo es entfernt wurde: zwei Zustände einer Grabung oder eines Objekts.",
       },
+      change: {
+        title: "Veränderung seit einer anderen Aufnahme",
+        lead: "In Millimetern: positiv, wo Material hinzukam, negativ, wo es entfernt wurde. Das Mittel über einen kleinen Fleck, damit das Rauschen der Scans wenig stört (M3C2).",
+      },
+      significant_change: {
+        title: "Signifikante Veränderung",
+        lead: "Signifikanter Zuwachs, signifikanter Verlust oder keine signifikante Veränderung. Signifikant heißt: Die Veränderung ist größer, als das Rauschen beider Scans und der Fehler ihrer Ausrichtung erklären. Ohne wirkliche Veränderung werden höchstens etwa 5 % der Oberfläche markiert.",
+      },
+      level_of_detection: {
+        title: "Kleinste erkennbare Veränderung",
+        lead: "In Millimetern. Eine kleinere Veränderung lässt sich nicht vom Rauschen der Scans und vom Fehler ihrer Ausrichtung unterscheiden (Nachweisgrenze, 95 %).",
+      },
       vertex_property: {
         title: "Werte aus der Datei des Scans",
         lead: "Eine Zahl, die die Scansoftware für jeden Punkt gespeichert hat: Qualität, Konfidenz, Intensität.",
       },
     },
-    radius: "Im Umkreis von",
-    radius_hint: "4 Kanten des Netzes",
-    distance: "Größter Abstand",
-    distance_hint: "je nach Größe des Modells",
+    lengths: {
+      radius: { label: "Im Umkreis von", hint: "4 Kanten des Netzes" },
+      distance: { label: "Größter Abstand", hint: "je nach Größe des Modells" },
+      registration: {
+        label: "Fehler der Ausrichtung",
+        hint: "0",
+        lead: "Der Standardfehler, den die Ausrichtung der Scans ergeben hat.",
+      },
+      projection: {
+        label: "Mittel über den Durchmesser",
+        hint: "8 Kanten des gröberen Netzes",
+        lead: "Ein größerer Fleck erkennt kleinere Veränderungen, verwischt aber Einzelheiten.",
+      },
+      normal: {
+        label: "Richtung aus dem Durchmesser",
+        hint: "das Doppelte des Mittels",
+        lead: "Die Veränderung wird entlang der mittleren Normale dieses Flecks gemessen.",
+      },
+    },
     rays: "Strahlen je Punkt",
     rays_hint: "Mehr Strahlen ergeben glattere Werte und dauern länger",
     bad_rays: (least, most) =>
@@ -1263,6 +1265,9 @@ export const texts = {
       "snapshot created": "benannte den Stand",
       "snapshot changed": "änderte den Schnappschuss",
       "snapshot deleted": "löschte den Schnappschuss",
+      "selection created": "speicherte die Auswahl",
+      "selection changed": "änderte die Auswahl",
+      "selection deleted": "löschte die Auswahl",
       "tour created": "erstellte die Führung",
       "tour changed": "änderte die Führung",
       "tour deleted": "löschte die Führung",
@@ -1595,6 +1600,7 @@ export const texts = {
     title: "Maßstäbliche Abbildung",
     title_of_view: (name: string) => `Abbildung der Ansicht „${name}“`,
     open: "Abbildung erstellen …",
+    unroll: "Abrollung …",
     of_view: "Abbildung dieser Ansicht erstellen …",
     from: "Blickrichtung",
     as_view: "Wie in der Ansicht gespeichert",

@@ -403,6 +403,7 @@ export const texts = {
     polygon: "Polygon",
     lasso: "Lasso",
     bucket: "Fill connected",
+    wand: "Wand",
     pick: "Pick a value",
     line: "Line",
     point: "Point",
@@ -598,6 +599,7 @@ export const texts = {
     paints: "Paint",
     erases: "Erase",
     through: "Paint through to the back",
+    snaps: "Snap to edges",
     reach: "Extent",
     connected: "Same value",
     connected_hint:
@@ -612,35 +614,6 @@ export const texts = {
     condition: "Condition",
     apply: "Fill",
     apply_erase: "Erase",
-  },
-
-  selection: {
-    title: "Selection",
-    keys: "Enter fills the selection, Escape discards it. Hold Shift to add an outline, Alt to subtract it, or both to intersect it.",
-    measuring: "Measuring…",
-    nothing: "Nothing selected",
-    share: (share: string) => `${share} of the surface`,
-    elsewhere: (n: number) =>
-      count(n, "outline is from another view", "outlines are from another view"),
-    mode: "Next outline",
-    modes: { replace: "New", add: "Add", subtract: "Subtract", intersect: "Intersect" },
-    mode_hints: {
-      replace: "Replaces the selection",
-      add: "Adds to the selection (Shift)",
-      subtract: "Removes from the selection (Alt)",
-      intersect: "Keeps the area that both have in common (Shift + Alt)",
-    },
-    delete_corner: "Delete corner",
-    fill: "Fill",
-    erase: "Erase",
-    discard: "Discard selection",
-    full: (n: number) =>
-      `A selection can have at most ${n} outlines. Fill or discard the selection.`,
-    in_layer: (layer: string) => `In ${layer}`,
-    painted: "painted",
-    mean: "mean",
-    lowest: "lowest",
-    highest: "highest",
   },
 
   maps: {
@@ -833,6 +806,7 @@ export const texts = {
       form: "Form and relief",
       place: "Position and direction",
       distance: "Distances",
+      change: "Change between surveys",
       file: "From the scan's file",
     },
     kinds: {
@@ -877,15 +851,42 @@ export const texts = {
         title: "Distance to another model",
         lead: "Positive where material was added, negative where it was removed. Compares two states of one excavation or object.",
       },
+      change: {
+        title: "Change since another survey",
+        lead: "In millimeters: positive where material was added, negative where it was removed. The mean over a small patch, so the noise of the scans disturbs it little (M3C2).",
+      },
+      significant_change: {
+        title: "Significant change",
+        lead: "Significant gain, significant loss, or no significant change. Significant means that the change is larger than the noise of both scans and the error of their alignment can explain. Without any real change, at most about 5 % of the surface is marked.",
+      },
+      level_of_detection: {
+        title: "Smallest detectable change",
+        lead: "In millimeters. A smaller change cannot be distinguished from the noise of the scans and the error of their alignment (level of detection, 95 %).",
+      },
       vertex_property: {
         title: "Values from the scan's file",
         lead: "A number that the scanning software stored for each point, such as quality, confidence or intensity.",
       },
     },
-    radius: "Within a radius of",
-    radius_hint: "4 edges of the mesh",
-    distance: "Largest distance",
-    distance_hint: "depends on the model's size",
+    lengths: {
+      radius: { label: "Within a radius of", hint: "4 edges of the mesh" },
+      distance: { label: "Largest distance", hint: "depends on the model's size" },
+      registration: {
+        label: "Error of the alignment",
+        hint: "0",
+        lead: "The standard error that the alignment of the scans reported.",
+      },
+      projection: {
+        label: "Average over a diameter of",
+        hint: "8 edges of the coarser mesh",
+        lead: "A larger patch detects smaller changes, but blurs details.",
+      },
+      normal: {
+        label: "Direction from a diameter of",
+        hint: "twice the average",
+        lead: "The change is measured along the mean normal of this patch.",
+      },
+    },
     rays: "Rays per point",
     rays_hint: "More rays give smoother values and take longer",
     bad_rays: (least: number, most: number) =>
@@ -1223,6 +1224,9 @@ export const texts = {
       "snapshot created": "named the state",
       "snapshot changed": "changed the snapshot",
       "snapshot deleted": "deleted the snapshot",
+      "selection created": "saved the selection",
+      "selection changed": "changed the selection",
+      "selection deleted": "deleted the selection",
       "tour created": "created the tour",
       "tour changed": "changed the tour",
       "tour deleted": "deleted the tour",
@@ -1553,6 +1557,7 @@ export const texts = {
     title: "Measured figure",
     title_of_view: (name: string) => `Figure of the view “${name}”`,
     open: "Create figure…",
+    unroll: "Unrolled picture…",
     of_view: "Create figure of this view…",
     from: "Seen from",
     as_view: "As saved in the view",

@@ -32,6 +32,14 @@ export const help: HelpTexts = {
   tool_keys: "Während ein Werkzeug aktiv ist",
   tool_rows: [
     ["Enter · Rücktaste · Esc", "Polygon oder Linie beenden · letzte Ecke entfernen · abbrechen"],
+    [
+      "Umschalt + A",
+      "Polygon oder Linie an Kanten und Rissen ausrichten oder nicht mehr; jeder Klick legt den gezeigten Verlauf fest",
+    ],
+    [
+      "Polygon, Lasso oder Zauberstab mit Umschalt · Alt",
+      "zur Auswahl hinzufügen · von ihr abziehen; beide: Schnittmenge; Rücktaste entfernt den letzten Teil, Enter füllt, Esc verwirft",
+    ],
     ["C, dann klicken", "dort kommentieren; Enter: in der Mitte der Ansicht"],
     ["Strg + Enter · Esc", "Kommentar senden · schließen und den Entwurf behalten"],
     [

@@ -24,6 +24,14 @@ export const help = {
   tool_keys: "While a tool is active",
   tool_rows: [
     ["Enter · Backspace · Escape", "finish the polygon or line · remove the last corner · cancel"],
+    [
+      "Shift + A",
+      "snap the polygon or line to edges and cracks, or stop snapping; each click fixes the previewed path",
+    ],
+    [
+      "Polygon, lasso or wand with Shift · Alt",
+      "add to the selection · subtract from it; both: intersect; Backspace removes the last part, Enter fills, Escape discards",
+    ],
     ["C, then click", "comment on that point; Enter: on the middle of the view"],
     ["Ctrl + Enter · Escape", "send the comment · close it and keep the draft"],
     [

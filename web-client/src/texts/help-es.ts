@@ -35,6 +35,14 @@ export const help: HelpTexts = {
       "Intro · Retroceso · Esc",
       "terminar el polígono o la línea · quitar el último vértice · cancelar",
     ],
+    [
+      "Mayús + A",
+      "ajustar el polígono o la línea a bordes y grietas, o dejar de hacerlo; cada clic fija el trazo mostrado",
+    ],
+    [
+      "Polígono, lazo o varita con Mayús · Alt",
+      "añadir a la selección · restar de ella; ambas: intersecar; Retroceso quita la última parte, Intro rellena, Esc descarta",
+    ],
     ["C, y después clic", "comentar allí; Intro: en el centro de la vista"],
     ["Ctrl + Intro · Esc", "enviar el comentario · cerrarlo y conservarlo sin enviar"],
     [

@@ -19,8 +19,21 @@ export interface OutlineHost {
   /** The number of window pixels per CSS pixel. */
   scale(): number;
   outlineChanged(): void;
+  /** Returns null if new points stay where they are set, with straight segments between them. */
+  edges?(): EdgeSnapping | null;
   /** The selection of finished outlines, if they are not used immediately. */
   readonly selection?: FinishedOutlines;
+}
+
+/** Moves points to edges in the picture, and follows edges from point to point. */
+export interface EdgeSnapping {
+  /**
+   * Returns the place of the strongest edge near a position. `from` is the previous point. Returns
+   * the position itself if no edge is near, or if edges cannot be followed as far as there.
+   */
+  placeAt(at: Point, from: Point | null): Point;
+  /** Returns the points of the edge between two points. Returns none for a straight segment. */
+  between(from: Point, to: Point): Point[];
 }
 
 /** Finished outlines whose corners can be moved. */
@@ -99,17 +112,17 @@ export abstract class OutlineTool {
   }
 
   protected finish(): void {
-    const path = this.points;
+    const { points: path, setsCorners } = this;
     this.giveUp();
-    if (path.length >= this._least) this.host.finishOutline(path, this.setsCorners);
+    if (path.length >= this._least) this.host.finishOutline(path, setsCorners);
   }
 
   protected get setsCorners(): boolean {
     return false;
   }
 
-  protected isAt(sample: PointerSample, [x, y]: Point): boolean {
-    return Math.hypot(sample.x - x, sample.y - y) <= kSnapPx * this.host.scale();
+  protected isAt(at: Point, [x, y]: Point): boolean {
+    return Math.hypot(at[0] - x, at[1] - y) <= kSnapPx * this.host.scale();
   }
 
   protected giveUp(): void {
@@ -146,9 +159,24 @@ export class LassoTool extends OutlineTool implements Tool {
   }
 }
 
-/** A tool for outlines that are set click by click, with a segment to the pointer. */
+/** A point that was set by a click. */
+interface Corner {
+  at: Point;
+  /** The point before the segment that leads to the corner. Null for the first corner. */
+  after: Point | null;
+}
+
+/**
+ * A tool for outlines that are set click by click, with a segment to the pointer. The segments are
+ * straight, or follow edges of the picture.
+ */
 export abstract class PlacesTool extends OutlineTool {
   protected pointer: Point | null = null;
+  private _corners: Corner[] = [];
+
+  protected get corners(): Point[] {
+    return this._corners.map(({ at }) => at);
+  }
 
   hover(sample: PointerSample | null): void {
     this.pointer = sample ? [sample.x, sample.y] : null;
@@ -158,7 +186,7 @@ export abstract class PlacesTool extends OutlineTool {
   key(key: string): boolean {
     if (this.points.length === 0) return this.host.selection?.key(key) ?? false;
     if (key === "Escape") this.giveUp();
-    else if (key === "Backspace" || key === "Delete") this.takeBack(this.points.length - 1);
+    else if (key === "Backspace" || key === "Delete") this.takeBackLast();
     else if (key === "Enter") this.enter();
     else return false;
     return true;
@@ -167,6 +195,43 @@ export abstract class PlacesTool extends OutlineTool {
   protected enter(): void {
     this.finish();
   }
+
+  protected override begin(sample: PointerSample): boolean {
+    const [x, y] = this.snapped([sample.x, sample.y]);
+    if (!super.begin({ ...sample, x, y })) return false;
+    this._corners = [{ at: this.points[0]!, after: null }];
+    return true;
+  }
+
+  /** Adds a corner, and before it the points of the edge that leads to it. */
+  protected addCorner(at: Point): void {
+    const after = this.points[this.points.length - 1]!;
+    this.points.push(...this.edgeTo(at), at);
+    this._corners.push({ at, after });
+    this.host.outlineChanged();
+  }
+
+  /** Returns the place of a corner that is set at this position. */
+  protected snapped(at: Point): Point {
+    const last = this.points[this.points.length - 1];
+    return this.host.edges?.()?.placeAt(at, last ?? null) ?? at;
+  }
+
+  /** Returns the points between the last point and this one. */
+  protected edgeTo(at: Point): Point[] {
+    const last = this.points[this.points.length - 1];
+    const edge = (last && this.host.edges?.()?.between(last, at)) ?? [];
+    return this.points.length + edge.length < this.most ? edge : [];
+  }
+
+  /** Removes the last corner with the segment that leads to it, or a point that was drawn. */
+  private takeBackLast(): void {
+    const last = this._corners[this._corners.length - 1];
+    const isCorner = last?.at === this.points[this.points.length - 1];
+    const after = isCorner && last?.after ? this.points.lastIndexOf(last.after) : -1;
+    this.takeBack(after >= 0 ? after + 1 : this.points.length - 1);
+  }
+
   /** Keeps only the first `points` points. */
   protected takeBack(points: number): void {
     if (points < 1) {
@@ -174,7 +239,14 @@ export abstract class PlacesTool extends OutlineTool {
       return;
     }
     this.points.length = Math.min(points, this.points.length);
+    const left = new Set(this.points);
+    this._corners = this._corners.filter(({ at }) => left.has(at));
     this.host.outlineChanged();
+  }
+
+  protected override giveUp(): void {
+    this._corners = [];
+    super.giveUp();
   }
 }
 
@@ -184,41 +256,49 @@ export abstract class PlacesTool extends OutlineTool {
  */
 export class PolygonTool extends PlacesTool implements Tool {
   readonly name = "polygon";
-  private _added = false; // whether the current press added a corner
+  private _before: number | null = null; // points before the corner of the current press
 
   override get outline(): Outline | null {
-    if (this.points.length === 0) return null;
+    const { points, corners } = this;
+    if (points.length === 0) return null;
+    const pointer = this.pointer && this.target(this.pointer);
     return {
-      points: this.points,
-      corners: this.points,
-      pointer: this.pointer,
-      closable: this.points.length >= 3,
+      points,
+      corners,
+      edge: pointer ? this.edgeTo(pointer) : [],
+      pointer,
+      closable: corners.length >= 3,
       area: true,
     };
   }
 
+  /** Whether all points were set one by one, so none of them belong to an edge. */
   protected override get setsCorners(): boolean {
-    return true;
+    return this.points.length === this.corners.length;
+  }
+
+  /** Returns the place of a corner at this position. The first corner closes the polygon. */
+  private target(at: Point): Point {
+    const first = this.points[0]!;
+    return this.corners.length >= 3 && this.isAt(at, first) ? first : this.snapped(at);
   }
 
   down(sample: PointerSample): void {
-    this._added = false;
+    this._before = null;
     if (this.grab(sample)) return;
-    this.pointer = [sample.x, sample.y];
-    if (this.points.length === 0) {
-      this._added = this.begin(sample);
+    const at: Point = (this.pointer = [sample.x, sample.y]);
+    const before = this.points.length;
+    if (before === 0) {
+      if (this.begin(sample)) this._before = before;
       return;
     }
-    const closes =
-      this.isAt(sample, this.points[0]!) || this.isAt(sample, this.points[this.points.length - 1]!);
-    if (closes) {
-      if (this.points.length >= 3) this.finish();
+    if (this.isAt(at, this.points[0]!) || this.isAt(at, this.points[before - 1]!)) {
+      this.enter();
       return;
     }
-    if (this.points.length === this.most) return;
-    this.points.push([sample.x, sample.y]);
-    this._added = true;
-    this.host.outlineChanged();
+    if (before === this.most) return;
+    this.addCorner(this.snapped(at));
+    this._before = before;
   }
 
   move(samples: PointerSample[]): void {
@@ -233,11 +313,14 @@ export class PolygonTool extends PlacesTool implements Tool {
   /** Undoes the press of the first finger, because a second finger touched. */
   cancel(): void {
     this.release(false);
-    if (this._added) this.takeBack(this.points.length - 1);
-    this._added = false;
+    if (this._before !== null) this.takeBack(this._before);
+    this._before = null;
   }
 
+  /** Closes the polygon, if it has enough corners. */
   protected override enter(): void {
-    if (this.points.length >= 3) this.finish();
+    if (this.corners.length < 3) return;
+    this.points.push(...this.edgeTo(this.points[0]!));
+    this.finish();
   }
 }

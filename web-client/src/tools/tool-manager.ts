@@ -64,8 +64,8 @@ export class ToolManager {
     if (!this._dragging) this._active.hover?.(sample);
   }
 
-  key(key: string): boolean {
-    return this._active.key?.(key) ?? false;
+  key(key: string, shift = false): boolean {
+    return this._active.key?.(key, shift) ?? false;
   }
 
   /** Cancels the current action. */

@@ -11,6 +11,7 @@ export type ToolName =
   | "polygon"
   | "lasso"
   | "bucket"
+  | "wand"
   | "pick"
   | "line"
   | "point"
@@ -28,6 +29,7 @@ export const kRailTools: readonly Exclude<ToolName, "face" | "part">[] = [
   "polygon",
   "lasso",
   "bucket",
+  "wand",
   "line",
   "point",
   "pick",
@@ -36,10 +38,13 @@ export const kRailTools: readonly Exclude<ToolName, "face" | "part">[] = [
 ];
 /** Tools that add marks to a record of the layer's table. */
 export const kMarkingTools: readonly ToolName[] = ["line", "point"];
-/** Tools that keep a selected area: tools that select, and tools that only look at the model. */
-export const kSelectingTools: readonly ToolName[] = [
-  "polygon",
-  "lasso",
+/** Tools that can follow edges in the picture. */
+export const kSnappingTools: readonly ToolName[] = ["polygon", "line"];
+/** Tools that select a part of the surface. */
+export const kSelectingTools: readonly ToolName[] = ["polygon", "lasso", "wand"];
+/** Tools that keep the selection: tools that select, and tools that only look at the model. */
+export const kSelectionKeepingTools: readonly ToolName[] = [
+  ...kSelectingTools,
   "orbit",
   "pan",
   "pick",
@@ -52,6 +57,7 @@ export const kPaintingTools: readonly ToolName[] = [
   "polygon",
   "lasso",
   "bucket",
+  "wand",
   ...kMarkingTools,
 ];
 /** Tools for users with more rights than a viewer. */
@@ -69,7 +75,7 @@ export interface Tool {
   /** The pointer moves without a pressed button. Null means that it has left the stage. */
   hover?(sample: PointerSample | null): void;
   /** Handles a key. Returns false if the tool does not use the key at the moment. */
-  key?(key: string): boolean;
+  key?(key: string, shift?: boolean): boolean;
   /** The current drawing. */
   readonly outline?: Outline | null;
 }
@@ -79,8 +85,10 @@ export interface Outline {
   points: readonly Point[];
   /** The points that were set click by click. */
   corners: readonly Point[];
-  /** The position of the pointer, if a segment leads to it. */
+  /** The place of a click at the pointer, if a segment leads to it. */
   pointer: Point | null;
+  /** The points between the last point and the pointer, if this segment follows an edge. */
+  edge?: readonly Point[];
   /** Whether a click on the first point closes the outline. */
   closable: boolean;
   /** Whether the drawing encloses an area. Otherwise it is a line. */

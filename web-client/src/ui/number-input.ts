@@ -17,6 +17,8 @@ export interface NumberInput {
   min?: number;
   max?: number;
   wrong?: boolean;
+  /** The id of the message about a wrong value. */
+  toldAt?: string;
   disabled?: boolean;
   /** Called with the field's text, for readNumber(). */
   typed?(text: string): void;
@@ -36,6 +38,7 @@ export function numberInput(field: NumberInput): TemplateResult {
     title=${ifDefined(field.title)}
     placeholder=${ifDefined(field.placeholder)}
     aria-invalid=${field.wrong ? "true" : "false"}
+    aria-describedby=${ifDefined(field.wrong ? field.toldAt : undefined)}
     ?disabled=${field.disabled ?? false}
     .value=${typeof value === "string" ? value : Number.isNaN(value) ? noChange : typedNumber(value)}
     @input=${(event: Event) => typed?.(inputOf(event).value)}

@@ -9,6 +9,46 @@ import { shareAfter } from "./keyboard";
 import { styled } from "./styled";
 import { sharedStyles } from "./styles";
 
+/**
+ * The looks of a second picture over the stage, which is compared with the picture of the stage, and
+ * of the labels that name both pictures.
+ */
+export const comparedStyles = css`
+  :host {
+    overflow: hidden;
+    pointer-events: none;
+  }
+  canvas {
+    position: absolute;
+    inset: 0;
+    width: 100%;
+    height: 100%;
+    object-fit: contain;
+  }
+  .label {
+    position: absolute;
+    top: 0.625rem;
+    max-width: calc(50% - 1.5rem);
+    padding: var(--space-1) var(--space-3);
+    border-radius: var(--radius-round);
+    background: var(--accent);
+    color: var(--accent-ink);
+    font-size: var(--text-small);
+    font-weight: 600;
+  }
+  /* The label of the picture of the stage. */
+  .label.open {
+    background: var(--calm);
+    color: var(--calm-ink);
+  }
+  .label.left {
+    left: 0.75rem;
+  }
+  .label.right {
+    right: 0.75rem;
+  }
+`;
+
 @customElement("strata-swipe-divider")
 export class StrataSwipeDivider extends LitElement {
   @property() label = "";

@@ -141,6 +141,7 @@ const takesWords = new Set([
   "project_roles.by_groups_also",
   "project_roles.lead",
   "site_people.role_changed",
+  "wand.amount.value",
 ]);
 
 async function inLanguage(language: (typeof kPageLanguages)[number]): Promise<Map<string, string>> {

@@ -65,6 +65,7 @@ beforeEach(() => {
     comment: vi.fn(),
     view: vi.fn(),
     snapshot: vi.fn(),
+    selection: vi.fn(),
     presence: vi.fn(),
     picked: vi.fn(),
     problem: vi.fn(),
@@ -165,6 +166,24 @@ describe("cameras", () => {
         .of("camera")
         .map((message) => message.width),
     ).toEqual([2]);
+  });
+
+  it("the number in a frame says whether the frame shows the current camera", () => {
+    connect();
+    connection.setCamera({ ...camera, width: 1 }, true);
+    draw();
+    expect(connection.cameraInFrame(0)).toBeNull();
+    expect(connection.cameraInFrame(1)).toBe(1);
+    connection.setCamera({ ...camera, width: 2 }, true);
+    expect(connection.cameraInFrame(1)).toBeNull(); // the newer camera is not sent yet
+    draw();
+    expect(connection.cameraInFrame(1)).toBeNull();
+    expect(connection.cameraInFrame(2)).toBe(2);
+    // the same camera at rest, for which the server may draw no frame
+    connection.setCamera({ ...camera, width: 2 }, false);
+    draw();
+    expect([2, 3].map((seq) => connection.cameraInFrame(seq))).toEqual([2, 2]);
+    expect(connection.cameraInFrame(1)).toBeNull();
   });
 
   it("after a reconnect the last camera and layer settings are sent again", () => {

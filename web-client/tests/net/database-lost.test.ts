@@ -71,6 +71,7 @@ beforeEach(() => {
     comment: ignore,
     view: ignore,
     snapshot: ignore,
+    selection: ignore,
     presence: ignore,
     picked: ignore,
     takenUp: ignore,

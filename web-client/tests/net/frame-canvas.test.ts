@@ -71,6 +71,21 @@ describe("frames on the canvas", () => {
     expect(close).toHaveBeenCalledTimes(2);
   });
 
+  it("the last complete frame is known", async () => {
+    const { waiting, frames } = setup();
+    const [first, second] = [part({ frame: 1 }), part({ frame: 2, last: false })];
+    const third = part({ frame: 2, x: 8 });
+    expect(frames.shown).toBeNull();
+    for (const each of [first, second, third]) frames.push(each);
+    waiting.get(first)!.resolve({ close: () => {} });
+    waiting.get(second)!.resolve({ close: () => {} });
+    await settle();
+    expect(frames.shown?.frame).toBe(1);
+    waiting.get(third)!.resolve({ close: () => {} });
+    await settle();
+    expect(frames.shown).toBe(third.header);
+  });
+
   it("the canvas takes the size of the picture", async () => {
     const { waiting, canvas, frames } = setup();
     const whole = part({});

@@ -73,6 +73,7 @@ beforeEach(() => {
     comment: ignore,
     view: ignore,
     snapshot: ignore,
+    selection: ignore,
     presence: ignore,
     picked: ignore,
     problem: ignore,

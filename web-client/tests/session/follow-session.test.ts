@@ -8,6 +8,7 @@ const kSource = join(__dirname, "../../src");
 /** Parts of the session that an element changes but does not show. */
 const kOnlyChanged: Readonly<Record<string, readonly string[]>> = {
   "features/past/past-bar.ts": ["lit"],
+  "features/surveys/class-changes.ts": ["view"],
   "features/tables/table-panel.ts": ["painting"],
 };
 

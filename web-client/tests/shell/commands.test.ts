@@ -141,6 +141,21 @@ describe("A key", () => {
     expect(panels).toEqual(["layers"]);
   });
 
+  it("snaps the polygon or the line to edges, and chooses the polygon for it", () => {
+    const { brush } = session.painting;
+    const snap = (): boolean => press("A", { shiftKey: true });
+    expect(snap()).toBe(true);
+    expect([session.tools.active, brush.snaps]).toEqual(["polygon", true]);
+    snap();
+    expect([session.tools.active, brush.snaps]).toEqual(["polygon", false]);
+    press("d");
+    snap();
+    expect([session.tools.active, brush.snaps]).toEqual(["line", true]);
+    press("v");
+    snap();
+    expect([session.tools.active, brush.snaps]).toEqual(["polygon", true]);
+  });
+
   it("with Ctrl or Cmd is another one, and with Alt the browser's", () => {
     expect(press("k", { ctrlKey: true })).toBe(true);
     expect(press("k", { metaKey: true })).toBe(true);

@@ -7,6 +7,8 @@ import { OpenModelSession } from "../../src/shell/open-model-session";
 import { notices } from "../../src/ui/notices";
 import { checkConnections, discardUnsaved, unsavedChanges } from "../../src/session/sessions";
 import { texts } from "../../src/texts";
+import type { Selection } from "../../src/features/painting/selection";
+import { selectionOf } from "../../src/features/painting/selection-of";
 import { Api } from "../../src/net/api";
 import { presencePalette } from "../../src/domain/palette";
 import type { Role, Welcome } from "../../src/core/protocol.gen";
@@ -268,6 +270,8 @@ describe("the camera in mid-stroke", () => {
 });
 
 describe("edits of whole areas", () => {
+  // the page loads it later
+  const selection = (): Selection => selectionOf(session);
   const edits = () =>
     socket()
       .of("edit")
@@ -275,6 +279,7 @@ describe("edits of whole areas", () => {
 
   it("a polygon is sent with the camera that it was drawn in, which stays meanwhile", async () => {
     await open();
+    const area = selection();
     session.chooseTool("polygon");
     const camera = session.view.camera.message();
     for (const [x, y] of [
@@ -304,11 +309,13 @@ describe("edits of whole areas", () => {
         through: false,
       },
     ]);
-    expect(session.painting.area.isEmpty).toBe(true);
+    await settle();
+    expect(area.isEmpty).toBe(true);
   });
 
   it("outlines of several views are sent as one edit, each with its camera", async () => {
     await open();
+    const area = selection();
     session.chooseTool("polygon");
     const outline = (x: number, keys: { shift?: boolean; alt?: boolean } = {}): void => {
       for (const [dx, dy] of [
@@ -325,7 +332,7 @@ describe("edits of whole areas", () => {
     session.gestures.orbit(40, 0);
     const second = session.view.camera.message();
     outline(50, { alt: true });
-    session.painting.paintSelection(true);
+    await area.paint(true);
     expect(edits()).toMatchObject([
       { op: "polygon", erase: true, steps: [{ combine: "subtract", camera: second }] },
     ]);
@@ -333,6 +340,7 @@ describe("edits of whole areas", () => {
 
   it("a selection ends with another tool that paints, not with one that looks", async () => {
     await open();
+    const area = selection();
     session.chooseTool("lasso");
     session.gestures.toolDown({ x: 5, y: 5 });
     session.gestures.toolMove([
@@ -340,12 +348,11 @@ describe("edits of whole areas", () => {
       { x: 100, y: 100 },
     ]);
     session.gestures.toolUp();
-    expect(session.painting.area.outlines).toHaveLength(1);
-    session.chooseTool("orbit");
-    session.chooseTool("polygon");
-    expect(session.painting.area.isEmpty).toBe(false);
+    expect(area.outlines).toHaveLength(1);
+    for (const tool of ["orbit", "wand", "polygon"] as const) session.chooseTool(tool);
+    expect(area.isEmpty).toBe(false);
     session.chooseTool("brush");
-    expect(session.painting.area.isEmpty).toBe(true);
+    expect(area.isEmpty).toBe(true);
     expect(edits()).toEqual([]);
   });
 

@@ -6,7 +6,13 @@ import { BrushTool, type BrushHost } from "../../src/features/painting/brush-too
 import { BucketTool } from "../../src/features/painting/bucket-tool";
 import { LineTool } from "../../src/features/records/line-tool";
 import { OrbitTool, PanTool } from "../../src/tools/navigate";
-import { kMostPoints, LassoTool, PolygonTool, type OutlineHost } from "../../src/tools/outline";
+import {
+  kMostPoints,
+  LassoTool,
+  PolygonTool,
+  type EdgeSnapping,
+  type OutlineHost,
+} from "../../src/tools/outline";
 import { PickTool } from "../../src/features/painting/pick-tool";
 import type { Tool } from "../../src/tools/tool";
 import { ToolManager } from "../../src/tools/tool-manager";
@@ -476,6 +482,175 @@ describe("outlines", () => {
     const tool = new LineTool(outlineHost);
     press(tool, [10, 10], [100, 10]);
     expect([tool.outline, outlineHost.open, tool.key("Escape")]).toEqual([null, 0, false]);
+  });
+});
+
+describe("outlines that follow edges", () => {
+  type Place = [number, number];
+  let finished: { path: Place[]; corners: boolean }[];
+  let edges: EdgeSnapping | null;
+  let following: OutlineHost;
+  beforeEach(() => {
+    finished = [];
+    // Corners are set at multiples of ten, and an edge leads first across, then down.
+    edges = {
+      placeAt: ([x, y]) => [10 * Math.round(x / 10), 10 * Math.round(y / 10)],
+      between: ([, y], [x]) => [[x, y]],
+    };
+    following = {
+      beginOutline: () => true,
+      finishOutline: (path, corners) => void finished.push({ path, corners }),
+      outlineEnded: () => {},
+      scale: () => 0.1, // so a press is on a point only within about a pixel
+      outlineChanged: () => {},
+      edges: () => edges,
+    };
+  });
+  const press = (tool: Tool, ...places: Place[]): void => {
+    for (const [x, y] of places) {
+      tool.down({ x, y });
+      tool.up();
+    }
+  };
+
+  it("a polygon has the points of the edges, also of the edge that closes it", () => {
+    const polygon = new PolygonTool(following);
+    press(polygon, [11, 9], [52, 33], [21, 78]);
+    expect(polygon.outline?.corners).toEqual([
+      [10, 10],
+      [50, 30],
+      [20, 80],
+    ]);
+    polygon.key("Enter");
+    expect(finished).toEqual([
+      {
+        path: [
+          [10, 10],
+          [50, 10],
+          [50, 30],
+          [20, 30],
+          [20, 80],
+          [10, 80],
+        ],
+        corners: false,
+      },
+    ]);
+  });
+
+  it("the segment to the pointer is the one that a click then adds", () => {
+    const polygon = new PolygonTool(following);
+    press(polygon, [10, 10]);
+    polygon.hover({ x: 48, y: 31 });
+    const { edge, pointer } = polygon.outline!;
+    expect({ edge, pointer }).toEqual({ edge: [[50, 10]], pointer: [50, 30] });
+    press(polygon, [48, 31]);
+    expect(polygon.outline?.points).toEqual([[10, 10], ...edge!, pointer]);
+    // a touch has no pointer after the tap
+    polygon.hover(null);
+    expect(polygon.outline).toMatchObject({ edge: [], pointer: null });
+  });
+
+  it("the first corner closes it, even if the pointer would move elsewhere", () => {
+    const polygon = new PolygonTool(following);
+    press(polygon, [10, 10], [50, 30], [20, 80]);
+    polygon.hover({ x: 10.5, y: 10.5 });
+    expect(polygon.outline).toMatchObject({ edge: [[10, 80]], pointer: [10, 10] });
+    press(polygon, [10.5, 10.5]);
+    expect(finished.length).toBe(1);
+  });
+
+  it("Backspace and a second finger remove a corner with its edge", () => {
+    const polygon = new PolygonTool(following);
+    press(polygon, [10, 10], [50, 30], [20, 80]);
+    polygon.key("Backspace");
+    expect(polygon.outline?.points).toEqual([
+      [10, 10],
+      [50, 10],
+      [50, 30],
+    ]);
+    polygon.down({ x: 90, y: 90 });
+    expect(polygon.outline?.points.length).toBe(5);
+    polygon.cancel();
+    expect(polygon.outline?.points.length).toBe(3);
+    polygon.key("Backspace");
+    expect(polygon.outline).toMatchObject({ points: [[10, 10]], corners: [[10, 10]] });
+    polygon.key("Backspace");
+    expect(polygon.outline).toBeNull();
+  });
+
+  it("two corners are no area, however long the edge between them is", () => {
+    const polygon = new PolygonTool(following);
+    press(polygon, [10, 10], [50, 30], [10, 10]);
+    polygon.key("Enter");
+    expect(finished).toEqual([]);
+    expect(polygon.outline).toMatchObject({ closable: false });
+  });
+
+  it("each segment is straight if nothing is followed when it is set", () => {
+    const polygon = new PolygonTool(following);
+    press(polygon, [10, 10], [50, 30]);
+    const snapping = edges;
+    edges = null;
+    press(polygon, [23, 78]);
+    expect(polygon.outline?.points).toEqual([
+      [10, 10],
+      [50, 10],
+      [50, 30],
+      [23, 78],
+    ]);
+    polygon.key("Escape");
+    press(polygon, [1, 1], [5, 1], [5, 5]);
+    polygon.key("Enter");
+    expect(finished[0]?.corners).toBe(true);
+    edges = snapping;
+    press(polygon, [1, 1]);
+    expect(polygon.outline?.points).toEqual([[0, 0]]);
+  });
+
+  it("an edge with too many points becomes a straight segment", () => {
+    const long = Array.from({ length: kMostPoints - 1 }, (_, at): Place => [at, 7]);
+    edges = { placeAt: (at) => at, between: () => long };
+    const polygon = new PolygonTool(following);
+    press(polygon, [10, 10], [50, 30], [20, 80]);
+    expect(polygon.outline?.points.length).toBe(3);
+    polygon.key("Enter");
+    expect(finished[0]?.path.length).toBe(3);
+    edges = { placeAt: (at) => at, between: () => long.slice(2) };
+    press(polygon, [10, 10], [50, 30], [20, 80]);
+    expect(polygon.outline?.points.length).toBe(kMostPoints);
+    press(polygon, [99, 99]);
+    polygon.key("Enter");
+    expect(finished[1]?.path.length).toBe(kMostPoints);
+  });
+
+  it("a line follows edges between its places, and Backspace removes drawn points one by one", () => {
+    const tool = new LineTool(following);
+    press(tool, [10, 10], [52, 33]);
+    tool.down({ x: 90, y: 30 });
+    tool.move([{ x: 95, y: 30 }]);
+    tool.up();
+    expect(tool.outline?.points).toEqual([
+      [10, 10],
+      [50, 10],
+      [50, 30],
+      [90, 30],
+      [90, 30],
+      [95, 30],
+    ]);
+    tool.hover({ x: 121, y: 61 });
+    expect(tool.outline).toMatchObject({ edge: [[120, 30]], pointer: [120, 60] });
+    tool.key("Backspace");
+    expect(tool.outline?.points.length).toBe(5);
+    tool.key("Backspace");
+    tool.key("Backspace");
+    expect(tool.outline?.points).toEqual([[10, 10]]);
+    press(tool, [52, 33]);
+    tool.key("Enter");
+    expect(finished[0]?.path).toEqual([
+      [10, 10],
+      [50, 10],
+      [50, 30],
+    ]);
   });
 });
 

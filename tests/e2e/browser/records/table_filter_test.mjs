@@ -354,6 +354,37 @@ test("two layers are set against each other, with names and sums", async () => {
   );
 });
 
+test("two observers who used the same classes see how well they agree", async () => {
+  const { palette } = await server.json("GET", `${base}/layers/pieces`);
+  await server.json("POST", `${base}/layers`, {
+    name: "Second observer",
+    type: "u16",
+    palette,
+    resolution: 2048,
+  });
+  await server.json("POST", `${base}/layers/second-observer/edits`, {
+    op: "fill",
+    value: 1,
+    mode: "where",
+    where: "pieces = 1",
+  });
+  const { agreement: expected } = await server.json("POST", `${base}/cross-table`, {
+    rows: "pieces",
+    columns: "second-observer",
+  });
+  assert.ok(expected.kappa > 0 && expected.kappa < 1, JSON.stringify(expected));
+  await areas.getByLabel(words.cross_table.other).selectOption({ label: "Second observer" });
+  const agreement = areas.getByRole("region", { name: words.cross_table.agreement.title });
+  await agreement.waitFor();
+  await areas.getByText(`Cohen’s κ is ${expected.kappa.toFixed(2)}: `).waitFor();
+  await agreement.getByRole("rowheader", { name: "Sherd 1", exact: true }).waitFor();
+  const names = await agreement.getByRole("rowheader").allInnerTexts();
+  assert.equal(names.length, expected.classes.length);
+  assert.equal(names.at(-1), words.cross_table.agreement.unpainted);
+  assert.deepEqual(await findings(page), []);
+  await shot("agreement");
+});
+
 test("the pages have nothing to complain of, and the server ends with a clean log", async () => {
   browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);

@@ -8,6 +8,7 @@ export const fc = load_module("fast-check");
 
 // added to the minimum of a schema; other tests cover the limits of long lists
 const kManyItems = 3;
+const kMostNested = 2;
 const kStrangeTexts = [
   "",
   " ",
@@ -129,27 +130,28 @@ function number_of({ type, minimum = -1e6, exclusiveMinimum, maximum = 1e6 }) {
  * Makes objects with some of the optional members, and rarely with all. Most of them exclude one
  * another in ways that a schema does not describe.
  */
-function object_of(contract, schema, words) {
+function object_of(contract, schema, words, open) {
   const members = Object.entries(schema.properties ?? {});
   if (members.length === 0) {
     const values =
       typeof schema.additionalProperties === "object"
-        ? arbitrary_of(contract, schema.additionalProperties, words)
+        ? arbitrary_of(contract, schema.additionalProperties, words, open)
         : fc.constant(1);
     return schema.additionalProperties === false
       ? fc.constant({})
       : fc.dictionary(fc.constantFrom("es", "pt-BR", "name", "depth"), values, { maxKeys: 2 });
   }
   const required = schema.required ?? [];
-  const optional = members.map(([name]) => name).filter((name) => !required.includes(name));
-  const all = fc.record(
-    Object.fromEntries(
-      members.map(([name, member]) => [
-        name,
-        words.by_name[name] ?? arbitrary_of(contract, member, words),
-      ]),
-    ),
-  );
+  const possible = members
+    .map(([name, member]) => [
+      name,
+      words.by_name[name] ?? arbitrary_of(contract, member, words, open),
+    ])
+    .filter(([, values]) => values !== null);
+  const names = possible.map(([name]) => name);
+  if (!required.every((name) => names.includes(name))) return null;
+  const optional = names.filter((name) => !required.includes(name));
+  const all = fc.record(Object.fromEntries(possible));
   const fewest = Math.max(0, (schema.minProperties ?? 0) - required.length);
   return fc
     .tuple(
@@ -184,16 +186,26 @@ function choices_of(contract, schema) {
   });
 }
 
-export function arbitrary_of(contract, schema, words) {
+/**
+ * Returns null for values that contain values of the same schema in more than kMostNested levels.
+ * `open` are the schemas that contain this one.
+ */
+export function arbitrary_of(contract, schema, words, open = []) {
   const component = schema.$ref?.split("/").at(-1);
   if (component && words.by_schema[component]) return words.by_schema[component];
+  if (component) {
+    if (open.filter((each) => each === component).length === kMostNested) return null;
+    open = [...open, component];
+  }
   const { description, default: ignored, ...meant } = contract.resolve(schema);
   if ("const" in meant) return fc.constant(meant.const);
   if (meant.enum) return fc.constantFrom(...meant.enum);
-  if (meant.oneOf || meant.anyOf)
-    return fc.oneof(
-      ...choices_of(contract, meant).map((choice) => arbitrary_of(contract, choice, words)),
-    );
+  if (meant.oneOf || meant.anyOf) {
+    const choices = choices_of(contract, meant)
+      .map((choice) => arbitrary_of(contract, choice, words, open))
+      .filter((choice) => choice !== null);
+    return choices.length > 0 ? fc.oneof(...choices) : null;
+  }
   switch (meant.type) {
     case "null":
       return fc.constant(null);
@@ -206,14 +218,16 @@ export function arbitrary_of(contract, schema, words) {
       return number_of(meant);
     case "array": {
       const fewest = meant.minItems ?? 0;
-      return fc.array(arbitrary_of(contract, meant.items ?? {}, words), {
+      const items = arbitrary_of(contract, meant.items ?? {}, words, open);
+      if (items === null) return fewest > 0 ? null : fc.constant([]);
+      return fc.array(items, {
         minLength: fewest,
         maxLength: Math.min(meant.maxItems ?? Infinity, fewest + kManyItems),
         size: "max",
       });
     }
     case "object":
-      return object_of(contract, meant, words);
+      return object_of(contract, meant, words, open);
     default:
       return fc.constantFrom(1, "x", null);
   }

@@ -497,6 +497,35 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     { name: "eraser", start: () => tool("e") },
     { name: "polygon", start: () => tool("a") },
     { name: "fill connected", start: () => tool("g") },
+    {
+      name: "wand",
+      start: async () => {
+        await tool("Shift+G");
+        await page.mouse.click(...(await at_stage(0.5, 0.5)));
+        await page.locator("strata-selection-bar").getByRole("slider").waitFor();
+      },
+    },
+    {
+      name: "border of the selection",
+      start: async () => {
+        await page
+          .locator("strata-selection-bar")
+          .getByRole("button", exact(w.selection.border.open))
+          .click();
+        await page.getByRole("dialog", exact(w.selection.border.title)).waitFor();
+      },
+      end: escape,
+    },
+    {
+      name: "save the selection",
+      start: from_menu(w.selection.more, w.selection.save),
+      end: close_dialog,
+    },
+    {
+      name: "saved selections",
+      start: from_menu(w.selection.more, w.selection.saved),
+      end: close_dialog,
+    },
     { name: "line", start: () => tool("d") },
     {
       name: "measure",
@@ -670,6 +699,15 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
         await dialog.first().waitFor();
         await close_dialog();
       },
+    },
+    {
+      name: "unrolled picture",
+      start: async () => {
+        await open_tab(page, w, w.view.title);
+        await open(button(w.figures.unroll));
+        await page.locator('strata-rollout-dialog figure[aria-busy="false"] img').waitFor();
+      },
+      end: close_dialog,
     },
     {
       name: "new tour",

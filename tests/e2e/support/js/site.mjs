@@ -208,6 +208,7 @@ export class Site {
     await this.#view("West");
     await this.#tour("Round");
     await this.#snapshot("First");
+    await this.#selection("Sunny");
     await this.#post("/models/wall/tours/round/files?name=north.png", "picture.png");
     const { path } = await this.#kiosk("Hall");
     this.kiosk_link = path.split("/").pop();
@@ -269,6 +270,11 @@ export class Site {
 
   #snapshot(name) {
     return this.server.json("POST", "/models/wall/snapshots", { name });
+  }
+
+  #selection(name) {
+    const definition = { audience: "everyone", within: { where: "true" } };
+    return this.server.json("POST", "/models/wall/selections", { name, ...definition });
   }
 
   #tour(name) {
@@ -389,6 +395,8 @@ export class Site {
         return (await this.#view(name)).slug;
       case "snapshot":
         return (await this.#snapshot(name)).slug;
+      case "selection":
+        return (await this.#selection(name)).slug;
       case "tour":
         return (await this.#tour(name)).slug;
       case "kiosk":

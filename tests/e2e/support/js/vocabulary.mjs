@@ -136,6 +136,7 @@ export const path_words = {
   view: mostly("west", "1"),
   tour: mostly("round", "1"),
   snapshot: mostly("first", "1"),
+  selection: mostly("sunny", "1"),
   object: mostly("1"),
   kiosk: mostly("1"),
   file: mostly("1"),
@@ -335,6 +336,8 @@ export const particulars = {
   revoke_kiosk: { path: spare("kiosk") },
   delete_view: { path: { model: one("wall"), ...spare("view") } },
   delete_snapshot: { path: { model: one("wall"), ...spare("snapshot") } },
+  delete_selection: { path: { model: one("wall"), ...spare("selection") } },
+  change_selection: { path: { model: one("wall"), ...spare("selection") } },
   delete_object: { path: { project: one("site"), ...spare("object", "1") } },
   change_snapshot: { path: { model: one("wall"), ...spare("snapshot") } },
   change_view: { path: { model: one("wall"), ...spare("view", "west") } },
@@ -384,6 +387,23 @@ export const particulars = {
           { layer: "cracks", column: "code" },
           { layer: "units", column: "nothing" },
         ),
+        FigureRollout: one(
+          { axis: { point: [0, 0, -1], direction: [0, 1, 0] } },
+          { axis: { point: [0, 0, -1], direction: [0, 1, 0] }, radius: 1, cut: 90, relief: false },
+          { radius: 1 },
+        ),
+      },
+    }),
+  },
+  rollout: {
+    path: { model: one("wall") },
+    ...json({
+      by_name: { mm_per_pixel: one(20, 50, 0), radius: one(0.5, 2, 0), half_angle: one(0, 20, -5) },
+      by_schema: {
+        RolloutAxis: one(
+          { point: [0, 0, -1], direction: [0, 1, 0] },
+          { point: [0, 0, 0], direction: [0, 0, 0] },
+        ),
       },
     }),
   },
@@ -432,6 +452,18 @@ export const particulars = {
           { operation: "border", width_mm: 1, of: 3, value: 1 },
           { operation: "border", width_mm: 1, from: "units", erase: true },
           { operation: "border", width_mm: 1 },
+        ),
+      },
+    }),
+  },
+  compare_layer: {
+    path: { model: one("wall"), layer: one("cracks", "units", "moisture") },
+    ...json({
+      by_schema: {
+        LayerChangesRequest: one(
+          { since: "wall-2", tolerance_mm: 1 },
+          { since: "wall-2", layer: "cracks", tolerance_mm: 5, max_angle: 90, min_area_cm2: 1 },
+          { since: "wall", tolerance_mm: 1 },
         ),
       },
     }),
@@ -521,6 +553,13 @@ export const particulars = {
   },
   list_undo_steps: { queries: one({}, { limit: "3" }) },
   list_timeline_steps: { queries: one({}, { before: "4" }, { after: "2", limit: "3" }) },
+  object_statistics: {
+    query: {
+      layer: mostly(...kLayers),
+      from: one("2018", "2019-05", "2019-05-01", "2019-13"),
+      to: one("2019", "2018-12", "2019-02-30"),
+    },
+  },
   layer_difference: json({ by_name: { from: one(0, 1, 3), to: one(0, 2) } }),
   list_layer_records: units_layer,
   create_layer_records: { ...units_layer, ...new_records },

@@ -8,8 +8,7 @@ import { icon } from "../../ui/icons";
 import "./look-list";
 import { withKey } from "../../ui/keys/command-keys";
 import { texts } from "../../texts";
-import type { TourRequest } from "../../session/requests";
-import type { ViewRequest } from "../../session/requests";
+import type { RolloutDialogRequest, TourRequest, ViewRequest } from "../../session/requests";
 
 @customElement("strata-view-panel")
 export class StrataViewPanel extends SidePanel {
@@ -84,9 +83,14 @@ export class StrataViewPanel extends SidePanel {
       this.dispatchEvent(
         new CustomEvent<ViewRequest>("request", { detail: { dialog: "figure", view: null } }),
       );
+    const unroll = (): boolean =>
+      this.dispatchEvent(
+        new CustomEvent<RolloutDialogRequest>("request", { detail: { dialog: "rollout" } }),
+      );
     return html`<div class="part">
       <h3>${texts.figures.title}</h3>
       <div><button title=${withKey(texts.figures.open, "figure")} @click=${open}>${icon("measure")}${texts.figures.open}</button></div>
+      <div><button @click=${unroll}>${icon("measure")}${texts.figures.unroll}</button></div>
     </div>`;
   }
 }

@@ -9,8 +9,8 @@ import {
   figureChoices,
   figureRequest,
   isDpi,
-  kDirections,
   kDpiRange,
+  kFigureFrom,
   kFormats,
   kOrientations,
   kPapers,
@@ -37,6 +37,8 @@ import { isBusy, type LayerJob } from "../../session/layer-jobs";
 import type { ModelSession } from "../../session/model-session";
 import { fieldProblem, typingProblem, type FieldProblem } from "./figure-problems";
 import { wordFields } from "./figure-words";
+import { rolloutFields, rolloutStyles } from "./rollout-fields";
+import { kNewRollout, rolloutOf, wrongSurface, type RolloutInput } from "./rollout-request";
 import { labelFields, labelsOf, type LabelChoice } from "./figure-labels";
 import { numberInput } from "../../ui/number-input";
 import { radioGroup } from "../../ui/radio-group";
@@ -45,18 +47,24 @@ import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.figures;
-const kFrom: readonly FigureFrom[] = ["camera", ...kDirections, "face"];
+/** Returns the words for a direction of this user's view. */
+const nameOf = (from: FigureFrom): string =>
+  from === "rollout" ? texts.rollouts.from : words.froms[from];
+
 @customElement("strata-figure-dialog")
 export class StrataFigureDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** Null stands for this user's view. */
   @property({ attribute: false }) view: View | null = null;
+  /** Whether the dialog opens with the rollout of the draft. */
+  @property({ attribute: false }) unrolled = false;
   @state() private _choices: FigureChoices = figureChoices(null);
   @state() private _scaleTyped: string | null = null; // null if a scale of the list is chosen
   @state() private _dpiTyped: string | null = null;
   @state() private _problem: FieldProblem | null = null;
   @state() private _asking = false; // whether the user is picking a face while the dialog is hidden
   @state() private _sending = false;
+  @state() private _rollout: RolloutInput = kNewRollout; // the last valid input
   private readonly _kept = new Kept<unknown>(() => localStorage, "strata.figure", null);
   private _camera: CameraMessage | null = null; // this user's camera
   private _opener: HTMLElement | null = null;
@@ -66,7 +74,7 @@ export class StrataFigureDialog extends LitElement {
     followSession(this, "jobs", "layers", "tables", "views", "view", "appearance", "tools");
   }
 
-  static override styles = [sharedStyles, figureStyles];
+  static override styles = [sharedStyles, figureStyles, rolloutStyles];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -76,6 +84,9 @@ export class StrataFigureDialog extends LitElement {
     this._choices = choices.from === "face" && !face ? { ...choices, from: "camera" } : choices;
     // a figure of a saved view initially uses the camera of the view
     if (this.view) this._choices = { ...this._choices, from: "camera" };
+    if (this.unrolled) this._choices = { ...this._choices, from: "rollout" };
+    const { rollout } = this.session.figures.draft;
+    if (rollout && wrongSurface(rollout) === null) this._rollout = rollout;
     if (choices.scale !== null && !kScales.includes(choices.scale))
       this._scaleTyped = scaleText(choices.scale);
     if (!kResolutions.includes(choices.dpi)) this._dpiTyped = String(choices.dpi);
@@ -113,11 +124,14 @@ export class StrataFigureDialog extends LitElement {
 
   private get requestNow(): FigureRequest | null {
     const { session, view } = this;
+    const { model } = session;
     const { words: written, face } = session.figures.draft;
     const shown = view
       ? { view: String(view.id) }
       : { ...session.views.content(), ...(this._camera ? { camera: this._camera } : {}) };
-    const request = figureRequest(shown, this._choices, written, face, labelsOf(this.session));
+    const rollout = model && rolloutOf(this._rollout, model);
+    const labels = labelsOf(session);
+    const request = figureRequest(shown, this._choices, written, face, labels, rollout);
     return (
       request && {
         ...request,
@@ -155,7 +169,7 @@ export class StrataFigureDialog extends LitElement {
       <label class="field">
         <span>${words.from}</span>
         <select name="from" autofocus aria-invalid=${this.isWrong("from")} aria-describedby=${this.toldAt("from")} @change=${(event: Event) => this.chooseFrom(valueFor(event) as FigureFrom)}>
-          ${kFrom.map((each) => html`<option value=${each} ?selected=${each === from}>${each === "camera" && this.view ? words.as_view : words.froms[each]}</option>`)}
+          ${kFigureFrom.map((each) => html`<option value=${each} ?selected=${each === from}>${each === "camera" && this.view ? words.as_view : nameOf(each)}</option>`)}
         </select>
       </label>
       ${
@@ -165,8 +179,16 @@ export class StrataFigureDialog extends LitElement {
           </div>`
           : nothing
       }
+      ${from === "rollout" ? this.surface() : nothing}
       ${this.problemOf("from")}
     </div>`;
+  }
+
+  private surface(): TemplateResult | typeof nothing {
+    const { model, figures } = this.session;
+    return model
+      ? rolloutFields(figures.draft.rollout ?? kNewRollout, model, (input) => this.unroll(input))
+      : nothing;
   }
 
   private scale(): TemplateResult {
@@ -294,12 +316,16 @@ export class StrataFigureDialog extends LitElement {
           ${words.legend}
         </label>
       </div>
-      ${labelFields(this.session, {
-        wrong: this.isWrong("labels"),
-        told: this.toldAt("labels"),
-        problem: this.problemOf("labels"),
-        choose: (labels) => this.label(labels),
-      })}`;
+      ${
+        this._choices.from === "rollout"
+          ? nothing
+          : labelFields(this.session, {
+              wrong: this.isWrong("labels"),
+              told: this.toldAt("labels"),
+              problem: this.problemOf("labels"),
+              choose: (labels) => this.label(labels),
+            })
+      }`;
   }
 
   private warning(): TemplateResult | typeof nothing {
@@ -336,7 +362,7 @@ export class StrataFigureDialog extends LitElement {
   /** Returns a description of the preview for screen readers. */
   private description(): string {
     const { from, scale, paper } = this._choices;
-    const seen = from === "camera" && this.view ? words.as_view : words.froms[from];
+    const seen = from === "camera" && this.view ? words.as_view : nameOf(from);
     return words.preview(paper.toUpperCase(), seen, scale === null ? words.fits : scaleText(scale));
   }
 
@@ -407,6 +433,14 @@ export class StrataFigureDialog extends LitElement {
     this.requestUpdate();
   }
 
+  /** The preview keeps the last valid surface. The fields show what is wrong. */
+  private unroll(input: RolloutInput): void {
+    this.session.figures.draft.rollout = input;
+    if (wrongSurface(input) === null) this._rollout = input;
+    if (this._problem?.field === "from") this._problem = null;
+    this.requestUpdate();
+  }
+
   private correct(): void {
     this.dispatchEvent(new CustomEvent("correct"));
   }
@@ -449,7 +483,9 @@ export class StrataFigureDialog extends LitElement {
     const request = this.requestNow;
     if (this._sending || (this.job && isBusy(this.job))) return;
     const problem = request ? this.typingProblem : { field: "from", text: words.no_face };
-    if (request && !problem) {
+    const { rollout } = this.session.figures.draft;
+    const isWrong = this._choices.from === "rollout" && rollout && wrongSurface(rollout) !== null;
+    if (request && !problem && !isWrong) {
       void this.make(request);
     } else {
       this._problem = problem;

@@ -20,6 +20,7 @@ const kFieldOf: Readonly<Record<string, string>> = {
   center: "from",
   camera: "from",
   view: "from",
+  rollout: "from",
 };
 const kFields: readonly string[] = [
   "from",

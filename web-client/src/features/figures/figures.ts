@@ -9,6 +9,7 @@ import type { LayerJobs } from "../../session/layer-jobs";
 import { notices } from "../../ui/notices";
 import { saveBlob } from "../../ui/save-from";
 import { texts } from "../../texts";
+import type { RolloutInput } from "./rollout-request";
 
 export class Figures {
   /**
@@ -18,7 +19,8 @@ export class Figures {
     words: FigureWords;
     labels: { layer: number; column: string } | null;
     face: Face | null;
-  } = { words: { title: "", caption: "", credit: "" }, labels: null, face: null };
+    rollout: RolloutInput | null; // null before the first rollout
+  } = { words: { title: "", caption: "", credit: "" }, labels: null, face: null, rollout: null };
   /**
    * The key of the job that the open dialog waits for. The file of this job is saved immediately.
    * Notices offer the files of other jobs.

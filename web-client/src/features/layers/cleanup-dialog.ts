@@ -1,5 +1,5 @@
-// <strata-cleanup-dialog>: removes small regions of a layer, fills holes, smooths borders and paints
-// borders. It is next to the 3D view. A preview counts what would change.
+// <strata-cleanup-dialog>: removes small regions of a layer, fills holes, smooths borders, removes
+// narrow parts, closes gaps and paints borders. It is next to the 3D view. A preview counts what would change.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -18,7 +18,7 @@ import { radioGroup } from "../../ui/radio-group";
 import { formStyles, sharedStyles } from "../../ui/styles";
 import { classField } from "./class-field";
 import { cleanupOf, kOperations, type CleanupInput } from "./cleanup-request";
-import { RegionJob } from "./region-job";
+import { kProblem, RegionJob } from "./region-job";
 import { regionStyles } from "./region-styles";
 
 const words = texts.regions;
@@ -39,20 +39,21 @@ export class StrataCleanupDialog extends LitElement {
     line: null,
   };
   @state() private _erasesLine = false;
-  private readonly _work = new RegionJob(
-    () => this.session.api,
-    () => this.requestUpdate(),
-  );
+  private readonly _work = new RegionJob(this);
+  /** The value of the line in the last rendering. Null: erase. */
+  private _line: number | null = null;
 
   constructor() {
     super();
     followSession(this, "painting", "layers", "tables");
   }
 
-  /** A closed dialog changes nothing. */
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    void this._work.cancel();
+  /** The value of the brush is a part of the input for borders. */
+  override willUpdate(): void {
+    const line = this._erasesLine ? null : this.session.painting.brush.valueFor(this.layer);
+    if (line === this._line) return;
+    this._line = line;
+    if (this._input.operation === "border") this._work.reset();
   }
 
   static override styles = [sharedStyles, formStyles, regionStyles];
@@ -88,6 +89,10 @@ export class StrataCleanupDialog extends LitElement {
         return this.size("area", words.smaller_than, "cm²", "area_cm2");
       case "majority":
         return this.size("radius", words.radius, "mm", "radius_mm");
+      case "open":
+      case "close":
+        return html`${this.size("width", words.narrower_than, "mm", "width_mm")}
+          ${classField({ layer: this.layer, value: this._input.of, empty: words.only_value, wrong: this._work.field === "of", typed: (of) => this.change({ of }) })}`;
       case "border":
         return this.borderFields();
     }
@@ -118,10 +123,7 @@ export class StrataCleanupDialog extends LitElement {
           { value: true, content: texts.areas.erases },
         ],
         chosen: this._erasesLine,
-        choose: (chosen) => {
-          this._erasesLine = chosen;
-          this._work.reset();
-        },
+        choose: (chosen) => (this._erasesLine = chosen),
       })}
       ${
         this._erasesLine
@@ -144,6 +146,7 @@ export class StrataCleanupDialog extends LitElement {
           value: this._input[member],
           min: 0,
           wrong: this._work.field === field,
+          toldAt: kProblem,
           typed: (text) => this.change({ [member]: text }),
         })}
         ${unit}
@@ -168,15 +171,12 @@ export class StrataCleanupDialog extends LitElement {
   }
 
   private async run(apply: boolean): Promise<void> {
-    const { session, layer } = this;
-    const line = this._erasesLine ? null : session.painting.brush.valueFor(layer);
-    const wish = cleanupOf({ ...this._input, line }, apply);
-    if ("problem" in wish) return this._work.refuse(wish.problem, wish.field);
-    const report = await this._work.run(() => this.start(wish));
-    if (!report || !apply) return;
-    if (!report.applied) return;
+    const body = cleanupOf({ ...this._input, line: this._line }, apply);
+    if ("problem" in body) return this._work.refuse(body.problem, body.field);
+    const report = await this._work.run(() => this.start(body), apply);
+    if (report?.skipped_texels) notices.show("info", words.skipped);
+    if (!report?.applied) return;
     notices.show("success", texts.areas.changed(formatArea(report.area_m2)));
-    if (report.skipped_texels) notices.show("info", words.skipped);
     this.dispatchEvent(new CustomEvent("closed"));
   }
 

@@ -4,7 +4,7 @@ import { readNumber } from "../../core/locale";
 import type { Cleanup, PieceRecords } from "../../core/protocol.gen";
 import { texts } from "../../texts";
 
-export const kOperations = ["sieve", "fill-holes", "majority", "border"] as const;
+export const kOperations = ["sieve", "fill-holes", "majority", "open", "close", "border"] as const;
 export type CleanupOperation = (typeof kOperations)[number];
 
 export interface CleanupInput {
@@ -58,6 +58,7 @@ export function cleanupOf(input: CleanupInput, apply: boolean): Cleanup | Refusa
   if (isRefusal(width)) return width;
   const of = valueOf(input.of);
   if ("problem" in of) return of;
+  if (operation !== "border") return { operation, width_mm: width, ...of, apply };
   return {
     operation,
     width_mm: width,

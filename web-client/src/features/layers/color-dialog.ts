@@ -38,12 +38,6 @@ const kPatterns = ["solid", "hatch", "dots", "outline"] as const;
 const kAngles = [45, 135, 0, 90]; // angles of the hatches of successive classes
 const kMostCategories = 30;
 
-/** Returns whether the layer has classes, or records with columns. */
-export const canBeColored = (layer: Layer): boolean =>
-  layer.table !== undefined ||
-  layer.palette.mode === "step" ||
-  (layer.palette.mode === "categorical" && layer.palette.points.length > 0);
-
 const colorsLayers = (column: Column): boolean =>
   column.kind !== "relation" && !holdsFiles(column) && !holdsMarks(column);
 

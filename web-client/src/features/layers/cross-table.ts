@@ -6,7 +6,7 @@ import { ApiError } from "../../net/api-error";
 import type { WorkbookQuery } from "../../domain/workbooks";
 import { labelOf } from "../../domain/cells";
 import { formatArea } from "../../domain/measure";
-import type { CrossTable } from "../../core/protocol.gen";
+import type { Agreement, CrossTable } from "../../core/protocol.gen";
 import { holdsFractions, type Layer } from "../../core/types";
 import { describeValue } from "../../session/layer-values";
 import { followSession } from "../../session/follow-session";
@@ -15,6 +15,7 @@ import { saveBlob } from "../../ui/save-from";
 import { workbookButtons, workbookQuery } from "../../ui/workbook-buttons";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
+import { agreementSummary, kMostClasses } from "./agreement-summary";
 
 const words = texts.cross_table;
 const kMostShown = 40; // the largest number of rows and of columns shown; files contain all
@@ -45,7 +46,8 @@ export class StrataCrossTable extends LitElement {
         padding-top: var(--space-3);
         border-top: var(--edge) solid var(--line);
       }
-      h3 {
+      h3,
+      h4 {
         font: 600 var(--text-large) var(--serif);
       }
       .scroller {
@@ -172,20 +174,41 @@ export class StrataCrossTable extends LitElement {
     return html`<div class="row" role="group" aria-label=${what}>
         ${workbookButtons({ what, rows: () => all, save: (f) => void this.save(other, f) })}
       </div>
-      <div class="scroller" tabindex="0" role="region" aria-label=${what}>
-        <table>
-          <thead>
-            <tr>${head!.map((cell) => html`<th scope="col">${cell}</th>`)}</tr>
-          </thead>
-          <tbody>
-            ${lines.map(
-              (line, row) =>
-                html`<tr class=${row === lines.length - 1 ? "sum" : ""}>${line.map((cell, at) => (at === 0 ? html`<th scope="row">${cell}</th>` : html`<td class=${at === line.length - 1 ? "sum" : ""}>${cell}</td>`))}</tr>`,
-            )}
-          </tbody>
-        </table>
-      </div>
-      ${all.length > kMostShown || all[0]!.length > kMostShown ? html`<p class="hint">${words.cut(kMostShown)}</p>` : nothing}`;
+      ${this.grid(what, head!, lines, true)}
+      ${all.length > kMostShown || all[0]!.length > kMostShown ? html`<p class="hint">${words.cut(kMostShown)}</p>` : nothing}
+      ${table.agreement ? this.agreement(other, table.agreement) : nothing}`;
+  }
+
+  private agreement(other: Layer, agreement: Agreement): TemplateResult {
+    const { title, cut } = words.agreement;
+    const { tables } = this.session;
+    const { sentences, rows, isCut } = agreementSummary(agreement, this.layer, other, tables);
+    return html`<h4>${title}</h4>
+      ${sentences.map((sentence) => html`<p>${sentence}</p>`)}
+      ${this.grid(title, rows[0]!, rows.slice(1), false)}
+      ${isCut ? html`<p class="hint">${cut(kMostClasses)}</p>` : nothing}`;
+  }
+
+  /** With `hasSums`, the last row and the last column contain sums. */
+  private grid(
+    what: string,
+    head: readonly string[],
+    lines: readonly (readonly string[])[],
+    hasSums: boolean,
+  ): TemplateResult {
+    return html`<div class="scroller" tabindex="0" role="region" aria-label=${what}>
+      <table>
+        <thead>
+          <tr>${head.map((cell) => html`<th scope="col">${cell}</th>`)}</tr>
+        </thead>
+        <tbody>
+          ${lines.map(
+            (line, row) =>
+              html`<tr class=${hasSums && row === lines.length - 1 ? "sum" : ""}>${line.map((cell, at) => (at === 0 ? html`<th scope="row">${cell}</th>` : html`<td class=${hasSums && at === line.length - 1 ? "sum" : ""}>${cell}</td>`))}</tr>`,
+          )}
+        </tbody>
+      </table>
+    </div>`;
   }
 
   private async save(other: Layer, f: WorkbookQuery["f"]): Promise<void> {

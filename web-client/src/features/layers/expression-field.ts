@@ -189,7 +189,7 @@ export class StrataExpressionField extends LitElement {
 
   override render(): TemplateResult {
     const { suggestions } = this._completion;
-    const examples = examplesFor(this.namesOf, this.session.model?.bounds ?? null);
+    const examples = examplesFor(this.namesOf, this.session.model);
     return html`<div class="editor">
         <label class="field">
           <span>${this.label}</span>

@@ -1,7 +1,7 @@
 // The names that a condition or formula for the open model can contain, in groups, and examples
 // that use the model's layers.
 
-import type { Bounds, Column, Table } from "../../core/protocol.gen";
+import type { Column, Model, Table } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
 import { labelOf } from "../../domain/cells";
 import { nameInText, type NamedClass, type Suggestion } from "../../domain/completion";
@@ -118,7 +118,9 @@ export function nameGroups({ layers, table, computes }: NamesOf): NameGroup[] {
   });
   groups.push({
     title: words.groups.functions,
-    names: words.functions.map(([text, hint]) => ({ text, hint })),
+    names: [...words.functions, ...(computes ? words.surface_functions : [])].map(
+      ([text, hint]) => ({ text, hint }),
+    ),
   });
   return groups.filter(({ names }) => names.length > 0);
 }
@@ -183,10 +185,16 @@ function middleOf(low: number, high: number): number {
   return Number((Math.round(middle / step) * step).toPrecision(4));
 }
 
+/** Returns a short distance on the model, with one digit. */
+function nearIn({ bounds: { min, max } }: Pick<Model, "bounds">): number {
+  const sides = max.map((high, axis) => high - min[axis]!);
+  return Number((Math.max(...sides) / 50).toPrecision(1));
+}
+
 /** Returns conditions and, with `computes`, formulas over the model's layers. */
 export function examplesFor(
   { layers, table, computes }: NamesOf,
-  bounds: Bounds | null,
+  model: Pick<Model, "bounds" | "unit"> | null,
 ): Example[] {
   const examples: Example[] = [];
   const add = (text: string, does: string): void => {
@@ -198,6 +206,13 @@ export function examplesFor(
     (layer) => layer.kind === "numeric" && layer.palette.mode === "categorical",
   );
   const withClasses = layers.find((layer) => classesOf(layer).length > 1);
+  if (computes && area && model) {
+    const near = nearIn(model);
+    add(
+      `within(${nameInText(area.slug)}, ${near})`,
+      words.examples.around(labelOf(area), `${formatNumber(near)} ${model.unit}`),
+    );
+  }
   if (first) {
     const slug = nameInText(first.slug);
     const middle = middleOf(first.palette.min, first.palette.max);
@@ -239,8 +254,10 @@ export function examplesFor(
     else add(`${path} is not null`, words.examples.filled(labelOf(column), labelOf(layer)));
     break;
   }
-  if (examples.length < 2 && bounds)
-    add(`z > ${middleOf(bounds.min[2], bounds.max[2])}`, words.examples.upper);
+  if (examples.length < 2 && model) {
+    const { min, max } = model.bounds;
+    add(`z > ${middleOf(min[2], max[2])}`, words.examples.upper);
+  }
   if (computes && examples.length < kMostExamples) add("slope", words.surface.slope);
   return examples;
 }

@@ -3,7 +3,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { formatArea, formatBytes } from "../../domain/measure";
+import { formatArea, formatBytes, shareText } from "../../domain/measure";
 import type { TransferReport } from "../../core/types";
 import { icon } from "../../ui/icons";
 import { isBusy, type LayerJob } from "../../session/layer-jobs";
@@ -13,7 +13,6 @@ import { notices } from "../../ui/notices";
 import { styled } from "../../ui/styled";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { shareText } from "./transfer-dialog";
 
 @customElement("strata-job-list")
 export class StrataJobList extends LitElement {

@@ -27,7 +27,7 @@ import { groupsOf, placeAfterStep, withMoved } from "../../domain/layer-groups";
 import { Kept } from "../../core/kept";
 import { layerNotes, whoIsLocked } from "./layer-notes";
 import { layerPanelStyles } from "./layer-panel-styles";
-import { canBeColored } from "./color-dialog";
+import { canBeColored } from "../../domain/palette";
 import { layerChip, legend, legendStyles } from "./legend";
 import "../../ui/panel/empty-state";
 import "../../ui/menu";

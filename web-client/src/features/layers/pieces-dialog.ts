@@ -15,7 +15,7 @@ import { numberInput } from "../../ui/number-input";
 import { formStyles, sharedStyles } from "../../ui/styles";
 import { classField } from "./class-field";
 import { piecesOf, type PiecesInput } from "./cleanup-request";
-import { RegionJob } from "./region-job";
+import { kProblem, RegionJob } from "./region-job";
 import { regionStyles } from "./region-styles";
 
 const words = texts.regions;
@@ -40,20 +40,11 @@ export class StrataPiecesDialog extends LitElement {
     perimeter: "",
   };
   @state() private _into: number | null = null;
-  private readonly _work = new RegionJob(
-    () => this.session.api,
-    () => this.requestUpdate(),
-  );
+  private readonly _work = new RegionJob(this);
 
   constructor() {
     super();
     followSession(this, "layers", "tables");
-  }
-
-  /** A closed dialog changes nothing. */
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    void this._work.cancel();
   }
 
   static override styles = [sharedStyles, formStyles, regionStyles];
@@ -93,7 +84,7 @@ export class StrataPiecesDialog extends LitElement {
       <label class="field">
         <span>${words.min_area}</span>
         <div class="size">
-          ${numberInput({ name: "min_area", value: this._input.minArea, min: 0, wrong: this._work.field === "min_area_cm2", typed: (minArea) => this.change({ minArea }) })}
+          ${numberInput({ name: "min_area", value: this._input.minArea, min: 0, wrong: this._work.field === "min_area_cm2", toldAt: kProblem, typed: (minArea) => this.change({ minArea }) })}
           cm²
         </div>
       </label>
@@ -134,11 +125,14 @@ export class StrataPiecesDialog extends LitElement {
   private async run(apply: boolean): Promise<void> {
     const target = this.target();
     if (!target) return;
-    const wish = piecesOf({ ...this._input, into: target.id }, apply);
-    if ("problem" in wish) return this._work.refuse(wish.problem, wish.field);
-    const report = await this._work.run(() => this.start(wish));
+    const body = piecesOf({ ...this._input, into: target.id }, apply);
+    if ("problem" in body) return this._work.refuse(body.problem, body.field);
+    const report = await this._work.run(() => this.start(body), apply);
+    if (report?.skipped_texels) notices.show("info", words.skipped);
     if (!report?.applied) return;
+    const unpainted = report.unpainted_keys?.length ?? 0;
     notices.show("success", words.records_made(report.regions));
+    if (unpainted > 0) notices.show("info", words.unpainted(unpainted));
     this.dispatchEvent(new CustomEvent("closed"));
   }
 

@@ -1,6 +1,12 @@
 // A job of a dialog on the regions of a layer: a preview or a change.
 
-import { html, nothing, type TemplateResult } from "lit";
+import {
+  html,
+  nothing,
+  type ReactiveController,
+  type ReactiveControllerHost,
+  type TemplateResult,
+} from "lit";
 import type { CleanupReport } from "../../core/protocol.gen";
 import type { Job } from "../../core/types";
 import { formatArea } from "../../domain/measure";
@@ -10,7 +16,17 @@ import { followJob } from "../../net/follow-job";
 import { texts } from "../../texts";
 import { styled } from "../../ui/styled";
 
-export class RegionJob {
+export interface RegionJobHost extends ReactiveControllerHost {
+  readonly session: { api: Api };
+  readonly shadowRoot: ShadowRoot | null;
+}
+
+/** The id of the message about a wrong field. */
+export const kProblem = "problem";
+
+const kStarts = '[slot="actions"]';
+
+export class RegionJob implements ReactiveController {
   /** The running job. */
   job: Job | null = null;
   report: CleanupReport | null = null;
@@ -19,19 +35,38 @@ export class RegionJob {
   field = "";
   private _starting = false;
   private _cancelled = false;
+  /** Counts the changes of the input. */
+  private _input = 0;
+  private _hadFocus = false;
 
-  constructor(
-    private readonly _api: () => Api,
-    private readonly _changed: () => void,
-  ) {}
+  constructor(private readonly _host: RegionJobHost) {
+    _host.addController(this);
+  }
+
+  /** A closed dialog changes nothing. */
+  hostDisconnected(): void {
+    void this.cancel();
+  }
+
+  hostUpdate(): void {
+    this._hadFocus = this._host.shadowRoot?.activeElement?.matches(`.stop, ${kStarts}`) ?? false;
+  }
+
+  /** Moves the focus from a button that has disappeared or cannot be pressed now. */
+  hostUpdated(): void {
+    const root = this._host.shadowRoot;
+    if (!root || !this._hadFocus || root.activeElement?.matches(":enabled")) return;
+    root.querySelector<HTMLElement>(`.stop, ${kStarts}:enabled`)?.focus();
+  }
 
   get isBusy(): boolean {
     return this._starting || this.job !== null;
   }
 
   refuse(problem: string, field: string): void {
+    this._input++;
     [this.report, this.problem, this.field] = [null, problem, field];
-    this._changed();
+    this._host.requestUpdate();
   }
 
   /** Forgets the result, because the input has changed. */
@@ -39,31 +74,37 @@ export class RegionJob {
     this.refuse("", "");
   }
 
-  /** Starts a job and follows it. Returns its report, or null if it failed or was canceled. */
-  async run(start: () => Promise<Job>): Promise<CleanupReport | null> {
+  /**
+   * Starts a job and follows it. Returns its report, or null if it failed or was canceled. If the
+   * input changes during a preview, the dialog does not show its result.
+   */
+  async run(start: () => Promise<Job>, apply: boolean): Promise<CleanupReport | null> {
     if (this.isBusy) return null;
     this._starting = true;
     this._cancelled = false;
     this.reset();
+    const input = this._input;
+    const isShown = (): boolean => apply || input === this._input;
+    let report: CleanupReport | null = null;
     try {
-      const first = await start();
-      const last = await followJob(this._api(), first, (job) => {
+      const last = await followJob(this._host.session.api, await start(), (job) => {
         const isNew = this.job === null;
         this.job = job;
-        this._changed();
+        this._host.requestUpdate();
         if (isNew && this._cancelled) void this.cancel();
       });
-      if (last.problem && last.state === "failed") this.tell(last.problem);
-      this.report = last.cleanup ?? null;
+      if (last.problem && last.state === "failed" && isShown()) this.tell(last.problem);
+      report = last.cleanup ?? null;
+      if (isShown()) this.report = report;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.tell(error.problem);
+      if (isShown()) this.tell(error.problem);
     } finally {
       this._starting = false;
       this.job = null;
-      this._changed();
+      this._host.requestUpdate();
     }
-    return this.report;
+    return report;
   }
 
   /** Cancels the job, also if its start is not confirmed yet. */
@@ -71,7 +112,7 @@ export class RegionJob {
     this._cancelled = true;
     if (!this.job) return;
     try {
-      await this._api().send("DELETE /jobs/{job}", { path: { job: this.job.id } });
+      await this._host.session.api.send("DELETE /jobs/{job}", { path: { job: this.job.id } });
     } catch (error) {
       // 409: the job has just ended
       if (!(error instanceof ApiError)) throw error;
@@ -94,11 +135,11 @@ export class RegionJob {
         ? html`<div class="progress" role="progressbar" aria-label=${words.progress} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
               <i ${styled({ width: `${percent}%` })}></i>
             </div>
-            <button type="button" @click=${() => void this.cancel()}>${words.stop}</button>`
+            <button type="button" class="stop" @click=${() => void this.cancel()}>${words.stop}</button>`
         : nothing
     }
       <p role="status">${report ? reportText(report, unit) : ""}</p>
-      <p class="error" role="alert" ?hidden=${!problem}>${problem}</p>`;
+      <p class="error" id=${kProblem} role="alert" ?hidden=${!problem}>${problem}</p>`;
   }
 }
 

@@ -15,6 +15,7 @@ import {
   shapeKind,
   type ShapeInput,
   type ShapeKind,
+  type ShapeLength,
 } from "./shape-kinds";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
@@ -30,6 +31,9 @@ export class StrataShapeFields extends LitElement {
     kind: "mean_curvature",
     radius: "",
     distance: "",
+    normal: "",
+    projection: "",
+    registration: "",
     rays: "",
     absolute: false,
     model: "",
@@ -134,8 +138,7 @@ export class StrataShapeFields extends LitElement {
           : html`<div class="parameters">
             ${info.takes.includes("model") ? this.modelField() : nothing}
             ${info.takes.includes("property") ? this.propertyField() : nothing}
-            ${info.takes.includes("radius") ? this.lengthField("radius", words.radius, words.radius_hint) : nothing}
-            ${info.takes.includes("distance") ? this.lengthField("distance", words.distance, words.distance_hint) : nothing}
+            ${kLengths.map((name) => (info.takes.includes(name) ? this.lengthField(name) : nothing))}
             ${info.takes.includes("rays") ? this.raysField() : nothing}
             ${info.takes.includes("absolute") ? this.absoluteField() : nothing}
           </div>`
@@ -144,16 +147,19 @@ export class StrataShapeFields extends LitElement {
 
   private isPossible(kind: ShapeKind): boolean {
     if (kind === "vertex_property") return this._properties.length > 0;
-    return kind !== "model_distance" || this._models.length > 0;
+    return !shapeKind(kind).takes.includes("model") || this._models.length > 0;
   }
 
-  private lengthField(name: "radius" | "distance", label: string, hint: string): TemplateResult {
+  private lengthField(name: ShapeLength): TemplateResult {
+    const { label, hint, lead }: { label: string; hint: string; lead?: string } =
+      words.lengths[name];
     return html`<label class="field">
       <span>${label}</span>
       <div class="length">
         ${numberInput({ name, value: this._input[name], placeholder: hint, min: 0, wrong: this.wrong === name, typed: (text) => this.change({ [name]: text }) })}
         mm
       </div>
+      ${lead ? html`<small>${lead}</small>` : nothing}
     </label>`;
   }
 
@@ -218,5 +224,7 @@ export class StrataShapeFields extends LitElement {
     this._input = { ...this._input, ...change };
   }
 }
+
+const kLengths = ["radius", "registration", "projection", "normal", "distance"] as const;
 
 const keyOf = ({ source, property: name }: VertexPropertyName): string => `${source}/${name}`;

@@ -14,8 +14,13 @@ export interface ShapeKindInfo {
   title: string;
   lead: string;
   /** The parameters that this kind requires. */
-  takes: readonly ("radius" | "distance" | "rays" | "absolute" | "model" | "property")[];
+  takes: readonly (ShapeLength | "rays" | "absolute" | "model" | "property")[];
 }
+
+/** The lengths in millimeters that users can enter. */
+export type ShapeLength = "radius" | "distance" | "normal" | "projection" | "registration";
+
+const kChangeTakes = ["model", "registration", "projection", "normal", "distance"] as const;
 
 const words = texts.shape.kinds;
 
@@ -47,6 +52,14 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
     ],
   },
   {
+    title: texts.shape.groups.change,
+    kinds: [
+      { kind: "change", ...words.change, takes: kChangeTakes },
+      { kind: "significant_change", ...words.significant_change, takes: kChangeTakes },
+      { kind: "level_of_detection", ...words.level_of_detection, takes: kChangeTakes },
+    ],
+  },
+  {
     title: texts.shape.groups.file,
     kinds: [{ kind: "vertex_property", ...words.vertex_property, takes: ["property"] }],
   },
@@ -56,10 +69,8 @@ export const shapeKind = (kind: ShapeKind): ShapeKindInfo =>
   kShapeGroups.flatMap((group) => group.kinds).find((info) => info.kind === kind)!;
 
 /** The user's input, as texts. */
-export interface ShapeInput {
+export interface ShapeInput extends Record<ShapeLength, string> {
   kind: ShapeKind;
-  radius: string;
-  distance: string;
   rays: string;
   absolute: boolean;
   model: string;
@@ -70,13 +81,18 @@ export interface ShapeInput {
 export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; field: string } {
   const { takes } = shapeKind(input.kind);
   const recipe: ShapeRecipe = { kind: input.kind };
-  for (const [name, member, text] of [
-    ["radius", "radius_mm", input.radius],
-    ["distance", "distance_mm", input.distance],
+  for (const [name, member] of [
+    ["radius", "radius_mm"],
+    ["distance", "distance_mm"],
+    ["normal", "normal_scale_mm"],
+    ["projection", "projection_scale_mm"],
+    ["registration", "registration_mm"],
   ] as const) {
+    const text = input[name];
     if (!takes.includes(name) || text.trim() === "") continue;
     const value = readNumber(text);
-    if (!(value > 0)) return { problem: texts.shape.bad_length, field: name };
+    if (!(value > 0) && !(name === "registration" && value === 0))
+      return { problem: texts.shape.bad_length, field: name };
     recipe[member] = value;
   }
   if (takes.includes("rays") && input.rays.trim() !== "") {

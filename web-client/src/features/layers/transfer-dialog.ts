@@ -5,7 +5,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { labelOf } from "../../domain/cells";
 import { ApiError } from "../../net/api-error";
 import { readNumber } from "../../core/locale";
-import { formatNumber, metresPer } from "../../domain/measure";
+import { likelyToleranceMm } from "../../domain/survey-changes";
 import { completeLayer, type Layer, type Model } from "../../core/types";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
@@ -19,13 +19,6 @@ import { texts } from "../../texts";
 const words = texts.transfer;
 
 const kUsualAngle = 60; // in degrees
-
-/** Guesses the deviation of a new scan: 1/500 of the object's size, in millimeters. */
-export function likelyToleranceMm(model: Pick<Model, "bounds" | "unit">): number {
-  const { min, max } = model.bounds;
-  const diagonal = Math.hypot(...[0, 1, 2].map((axis) => max[axis]! - min[axis]!));
-  return Number(((diagonal * metresPer(model.unit) * 1000) / 500).toPrecision(2));
-}
 
 @customElement("strata-transfer-dialog")
 export class StrataTransferDialog extends LitElement {
@@ -219,7 +212,3 @@ export class StrataTransferDialog extends LitElement {
     this._problemField = error.problem.field ?? "";
   }
 }
-
-/** Returns a share of an area such as "98.2 %", for reports. */
-export const shareText = (part: number, whole: number): string =>
-  whole > 0 ? `${formatNumber((100 * part) / whole, 3)} %` : "–";

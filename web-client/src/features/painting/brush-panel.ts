@@ -6,13 +6,14 @@ import { customElement, property } from "lit/decorators.js";
 import { labelOf } from "../../domain/cells";
 import { readNumber, typedNumber } from "../../core/locale";
 import type { MarkKind } from "../../domain/marks";
-import { formatArea, formatLength, formatNumber } from "../../domain/measure";
+import { formatLength, formatNumber } from "../../domain/measure";
 import type { Layer } from "../../core/types";
 import { kWidths, type WidthUnit } from "./brush-settings";
 import { describeValue } from "../../session/layer-values";
 import { ask } from "../../ui/dialog";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
+import { withKey } from "../../ui/keys/command-keys";
 import { unlockLabel, whyLocked } from "../../session/layer-lock";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
@@ -77,20 +78,6 @@ export class StrataBrushPanel extends LitElement {
       .locked .glyph {
         flex: none;
       }
-      .facts {
-        display: grid;
-        grid-template-columns: auto 1fr;
-        gap: var(--space-half) var(--space-3);
-        margin: var(--space-1) 0 var(--space-2);
-        font-size: var(--text-body);
-      }
-      .facts dt {
-        color: var(--ink-soft);
-      }
-      .facts dd {
-        margin: 0;
-        text-align: right;
-      }
       .pair {
         display: flex;
         flex-wrap: wrap;
@@ -129,12 +116,14 @@ export class StrataBrushPanel extends LitElement {
   }
 
   private areas(layer: Layer, tool: "bucket" | "lasso" | "polygon"): TemplateResult {
-    const { painting } = this.session;
+    const { session } = this;
+    const { painting } = session;
     const { erases, reach } = painting.brush.areas;
     const words = texts.areas;
     return html`<h2>${texts.tools[tool]}</h2>
       <p class="hint">${words.how[tool]}</p>
-      ${tool === "bucket" ? nothing : this.selection(layer)}
+      ${tool === "polygon" ? this.snaps() : nothing}
+      ${tool === "bucket" || !session.selection ? nothing : html`<strata-selection-panel .session=${session}></strata-selection-panel>`}
       ${radioGroup<boolean>({
         label: words.does,
         class: "segments",
@@ -163,32 +152,6 @@ export class StrataBrushPanel extends LitElement {
       ${this.whole(layer)}`;
   }
 
-  /** Renders the layer's values in the selected area. */
-  private selection(layer: Layer): TemplateResult {
-    const { area } = this.session.painting;
-    const words = texts.selection;
-    const found = area.measured?.layers[layer.slug];
-    if (area.isEmpty || !found) return html`<p class="hint">${words.keys}</p>`;
-    const measures = layer.kind === "numeric" && layer.palette.mode !== "categorical";
-    const amount = (value: number | undefined): string =>
-      value === undefined ? "–" : describeValue(layer, value, this.session.tables);
-    const rows: [string, string][] = [
-      [words.painted, formatArea(found.area_m2)],
-      ...(measures && found.texels > 0
-        ? ([
-            [words.lowest, amount(found.min)],
-            [words.mean, amount(found.mean)],
-            [words.highest, amount(found.max)],
-          ] as [string, string][])
-        : []),
-    ];
-    return html`<div>
-      <h3 class="caption">${words.in_layer(labelOf(layer))}</h3>
-      <dl class="facts">${rows.map(([what, value]) => html`<dt>${what}</dt><dd class="numeric">${value}</dd>`)}</dl>
-      <p class="hint">${words.keys}</p>
-    </div>`;
-  }
-
   /** Renders the fields for the record and the column of new lines and points. */
   private marks(layer: Layer, kind: MarkKind): TemplateResult {
     const { marks } = this.session;
@@ -205,7 +168,7 @@ export class StrataBrushPanel extends LitElement {
     };
     return html`<h2>${texts.tools[kind]}</h2>
       <p class="hint">${words.how[kind]}</p>
-      ${this.value(layer)}
+      ${kind === "line" ? this.snaps() : nothing} ${this.value(layer)}
       ${
         columns.length > 1
           ? html`<label class="field">
@@ -227,32 +190,33 @@ export class StrataBrushPanel extends LitElement {
   }
 
   private through(): TemplateResult {
-    const { painting } = this.session;
-    return html`<label class="check">
-      <input
-        type="checkbox"
-        .checked=${painting.brush.through}
-        @change=${(event: Event) => {
-          const { checked } = event.target as HTMLInputElement;
-          painting.setBrush((brush) => (brush.through = checked));
-        }}
-      />
-      <span>${texts.areas.through}</span>
-    </label>`;
+    return this.option("through", texts.areas.through);
   }
 
   private pressure(): TemplateResult {
+    return this.option("pressure", texts.brush.pressure);
+  }
+
+  private snaps(): TemplateResult {
+    return this.option("snaps", texts.areas.snaps, withKey(texts.areas.snaps, "polygon.snap"));
+  }
+
+  private option(
+    name: "through" | "pressure" | "snaps",
+    label: string,
+    title: string | typeof nothing = nothing,
+  ): TemplateResult {
     const { painting } = this.session;
-    return html`<label class="check">
+    return html`<label class="check" title=${title}>
       <input
         type="checkbox"
-        .checked=${painting.brush.pressure}
+        .checked=${painting.brush[name]}
         @change=${(event: Event) => {
           const { checked } = event.target as HTMLInputElement;
-          painting.setBrush((brush) => (brush.pressure = checked));
+          painting.setBrush((brush) => (brush[name] = checked));
         }}
       />
-      <span>${texts.brush.pressure}</span>
+      <span>${label}</span>
     </label>`;
   }
 

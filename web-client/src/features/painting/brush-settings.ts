@@ -19,6 +19,7 @@ export class BrushSettings {
    * `through` is true.
    */
   slant = { limited: false, maxDeg: 60 };
+  snaps = false; // whether polygons and lines follow edges in the picture
   /** Settings of polygon, lasso and bucket. */
   areas: { erases: boolean; reach: "connected" | "island" } = { erases: false, reach: "connected" };
   private readonly _values = new Map<number, number>();

@@ -6,12 +6,11 @@ import type { Connection } from "../../net/connection";
 import type { Point, StrokeHandle } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import { formatArea, metresPer } from "../../domain/measure";
-import type { Applied, Edit, Picked } from "../../core/protocol.gen";
+import type { Applied, Edit, Picked, Within } from "../../core/protocol.gen";
 import type { Layer, Model } from "../../core/types";
 import { whyLocked } from "../../session/layer-lock";
-import type { LitArea } from "../../session/lit-area";
-import { AreaSelection, kMostOutlines } from "./area-selection";
 import { BrushSettings } from "./brush-settings";
+import type { DrawnOutline, HeldKeys, Selection } from "./selection";
 import { describeValue, type RecordLabels, valueProblem } from "../../session/layer-values";
 import { notices } from "../../ui/notices";
 import type { PointerWatch } from "../../session/pointer-watch";
@@ -24,7 +23,10 @@ export interface PaintingHost {
   readonly view: ViewControl;
   readonly layers: LayersPart;
   readonly pointer: PointerWatch;
-  readonly lit: LitArea;
+  /** The selection; null until it is loaded. */
+  selection(): Selection | null;
+  /** Uses the selection, after it is loaded. */
+  withSelection(use: (selection: Selection) => void): void;
   model(): Model | null;
   records: RecordLabels;
   mayPaint(): boolean;
@@ -32,30 +34,28 @@ export interface PaintingHost {
   changed(): void;
 }
 
+/** A layer, and what a whole edit does in it. */
+export interface AreaTarget {
+  layer: Layer;
+  paint: { value: number } | { erase: true };
+}
+
 const kThinnest = 0.08; // share of the brush's radius at the lowest pen pressure
 
 export class Painting {
   readonly brush = new BrushSettings();
-  /** The selection of polygon and lasso. */
-  readonly area: AreaSelection;
   stroking = false; // also true while an outline is drawn
   penUsed = false; // whether the user has used a pen with pressure
 
   private _stroke: StrokeHandle | null = null;
   private _afterStroke: (() => void)[] = [];
+  private _held: HeldKeys = {}; // at the start of the outline
   private readonly _wholeEdits = new Set<string>(); // edits that were sent and have no response yet
 
-  constructor(private readonly _host: PaintingHost) {
-    const { layers, lit, view } = _host;
-    this.area = new AreaSelection({
-      lit,
-      camera: () => view.camera.message(),
-      scale: () => view.scale,
-      layers: () => (layers.selected ? [layers.selected.slug] : []),
-      fill: () => this.paintSelection(this.brush.areas.erases),
-      failed: (error) => notices.error(error),
-      changed: () => _host.changed(),
-    });
+  constructor(private readonly _host: PaintingHost) {}
+
+  changed(): void {
+    this._host.changed();
   }
 
   setBrush(change: (brush: BrushSettings) => void): void {
@@ -175,51 +175,48 @@ export class Painting {
   }
 
   beginOutline(at: PointerSample): boolean {
-    if (this.area.refusesMore(at)) {
-      notices.show("problem", texts.selection.full(kMostOutlines));
-      return false;
-    }
-    if (!this.areaTarget()) return false;
-    this.area.begin(at);
+    if (this._host.selection()?.refusesMore(at) || !this.areaTarget()) return false;
+    this._held = at;
     this.stroking = true;
     return true;
   }
 
   /** Selects the inside of the outline, which is painted later. */
   finishOutline(path: Point[], corners: boolean): void {
-    this.area.add(path, this.brush.through, corners);
+    const camera = this._host.view.camera.message();
+    const outline: DrawnOutline = { camera, path, through: this.brush.through, corners };
+    const held = this._held;
+    this._host.withSelection((selection) => selection.addOutline(outline, held));
   }
 
-  /** Paints or erases the selection, as one edit. */
-  paintSelection(erases: boolean): void {
-    const layer = this.layerToPaint();
-    const [first] = this.area.outlines;
-    const steps = this.area.within?.steps;
-    if (!layer || !first) return;
-    const value = this.valueFor(layer, erases);
-    if (value === null) return;
+  /** Paints or erases the inside of outlines, as one edit. */
+  paintOutlines({ layer, paint }: AreaTarget, { camera, path, through, steps }: Within): void {
     this.sendEdit(layer, {
       op: "polygon",
-      ...(erases ? { erase: true } : { value }),
-      camera: first.camera,
-      path: first.path,
-      through: first.through ?? false,
+      ...paint,
+      camera: camera!,
+      path: path!,
+      through: through ?? false,
       ...(steps ? { steps } : {}),
     });
-    this.area.clear();
   }
 
   /** Shows the size of the change after the server's response to a whole edit from this page. */
   onApplied({ id, texels_changed: texelsChanged, area_m2: areaM2 }: Applied): void {
     if (id === undefined || !this._wholeEdits.delete(id)) return;
-    if (texelsChanged === 0) notices.show("info", texts.areas.nothing_changed);
+    this.showChange(texelsChanged, areaM2);
+  }
+
+  showChange(texels: number | undefined, areaM2: number | undefined): void {
+    if (texels === 0) notices.show("info", texts.areas.nothing_changed);
     else notices.show("success", texts.areas.changed(formatArea(areaM2 ?? 0)));
   }
 
-  private areaTarget(): { layer: Layer; paint: { value: number } | { erase: true } } | null {
+  /** Returns null if nothing can be painted, after showing the reason to the user. */
+  areaTarget(erases = this.brush.areas.erases): AreaTarget | null {
     const layer = this.layerToPaint();
     if (!layer) return null;
-    if (this.brush.areas.erases) return { layer, paint: { erase: true } };
+    if (erases) return { layer, paint: { erase: true } };
     const value = this.valueFor(layer, false);
     return value === null ? null : { layer, paint: { value } };
   }

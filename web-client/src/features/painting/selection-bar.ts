@@ -1,21 +1,27 @@
-// <strata-selection-bar>: a bar over the 3D view while polygon or lasso have selected an area. It
-// shows the area's size and the effect of the next outline. Its buttons paint, erase or discard the
-// selection.
+// <strata-selection-bar>: a bar over the 3D view while polygon, lasso or wand have selected an area.
+// It shows the area's size and the effect of the next part. Its controls change, save, paint, erase
+// or discard the selection. It is in the page while one of these tools is active, because screen
+// readers announce only changes of an element that already exists.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { formatPercent } from "../../core/locale";
-import { formatArea } from "../../domain/measure";
+import { formatArea, formatNumber } from "../../domain/measure";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
-import { icon } from "../../ui/icons";
+import type { SelectionRequest } from "../../session/requests";
+import { icon, type IconName } from "../../ui/icons";
+import "../../ui/menu";
 import { radioGroup } from "../../ui/radio-group";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import type { SelectionMode } from "./area-selection";
+import type { Selection, SelectionMode } from "./selection";
+import "./selection-border";
+import { selectionOf } from "./selection-of";
 
 const words = texts.selection;
 const kModes: readonly SelectionMode[] = ["replace", "add", "subtract", "intersect"];
+const kSteps = 120;
 
 @customElement("strata-selection-bar")
 export class StrataSelectionBar extends LitElement {
@@ -31,18 +37,25 @@ export class StrataSelectionBar extends LitElement {
     css`
       :host {
         position: absolute;
-        inset: 0.75rem 0 auto 0;
+        inset: 0.75rem 5.75rem auto; /* left of the controls of the view */
         display: flex;
         justify-content: center;
-        padding: 0 var(--space-3);
         pointer-events: none;
       }
-      .bar {
+      .bar,
+      .parts,
+      .actions {
         display: flex;
-        flex-wrap: wrap;
         align-items: center;
         justify-content: center;
         gap: var(--space-2) var(--space-3);
+      }
+      .bar,
+      .parts {
+        flex-wrap: wrap;
+      }
+      .bar {
+        position: relative;
         padding: var(--space-2) var(--space-3);
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
@@ -63,33 +76,79 @@ export class StrataSelectionBar extends LitElement {
         font-size: var(--text-small);
         font-weight: 400;
       }
+      .segments {
+        flex: none;
+      }
       .segments button {
         padding: 0 var(--space-3);
       }
+      label {
+        display: flex;
+        align-items: center;
+        gap: var(--space-2);
+      }
+      label .numeric {
+        min-width: 4rem;
+      }
       @media (max-width: 560px) {
         :host {
-          inset: auto 0 0.75rem 0;
-          padding: 0 var(--space-2);
+          inset: auto 4.75rem 0.75rem 0.5rem;
+        }
+        .actions {
+          flex-wrap: wrap;
         }
         .segments {
-          order: 3;
+          flex: initial;
+        }
+        .segments button {
+          padding: 0 var(--space-2);
+        }
+        .discard {
+          position: absolute;
+          inset: var(--space-1) var(--space-1) auto auto;
         }
       }
     `,
   ];
 
-  override render(): TemplateResult | typeof nothing {
-    const { session } = this;
-    const { area } = session.painting;
-    const tool = session.tools.active;
-    if (area.isEmpty || (tool !== "polygon" && tool !== "lasso")) return nothing;
-    const { measured } = area;
-    const elsewhere = area.outlines.filter((each) => !area.isInView(each)).length;
+  /** Shows the elements that wait for the selection, which this bar makes. */
+  override firstUpdated(): void {
+    this.session.painting.changed();
+  }
+
+  override render(): TemplateResult {
+    const selection = selectionOf(this.session);
+    return html`<span class="visually-hidden" role="status">${this.announcement(selection)}</span>
+      ${selection.isEmpty ? nothing : this.bar(selection)}`;
+  }
+
+  private announcement({ isEmpty, measured }: Selection): string {
+    if (isEmpty || !measured) return "";
+    if (measured.texels === 0) return words.nothing;
+    return words.selected(formatArea(measured.area_m2), formatPercent(measured.share));
+  }
+
+  private bar(selection: Selection): TemplateResult {
+    const { erases } = this.session.painting.brush.areas;
+    const { measured, unmeasured, busy } = selection;
+    const elsewhere = selection.outlines.filter(({ outline }) => !selection.isInView(outline));
+    const size = measured
+      ? measured.texels > 0
+        ? formatArea(measured.area_m2)
+        : words.nothing
+      : unmeasured
+        ? words.unmeasured
+        : words.measuring;
+    const details =
+      elsewhere.length > 0
+        ? words.elsewhere(elsewhere.length)
+        : measured
+          ? words.share(formatPercent(measured.share))
+          : "\u00a0";
     return html`<div class="bar" role="group" aria-label=${words.title}>
-      <output class="numeric">
-        ${measured ? (measured.texels > 0 ? formatArea(measured.area_m2) : words.nothing) : words.measuring}
-        <small>${elsewhere > 0 ? words.elsewhere(elsewhere) : measured ? words.share(formatPercent(measured.share)) : "\u00a0"}</small>
-      </output>
+      <div class="parts">
+      <output class="numeric" aria-live="off">${size}<small>${details}</small></output>
+      ${unmeasured ? html`<button @click=${() => selection.measureAgain()}>${texts.try_again}</button>` : nothing}
       ${radioGroup<SelectionMode>({
         label: words.mode,
         class: "segments",
@@ -98,17 +157,76 @@ export class StrataSelectionBar extends LitElement {
           content: words.modes[value],
           title: words.mode_hints[value],
         })),
-        chosen: area.mode,
-        choose: (mode) => area.setMode(mode),
+        chosen: selection.mode,
+        choose: (mode) => selection.setMode(mode),
       })}
+      ${this.session.tools.active === "wand" ? this.tolerance(selection) : nothing}
+      </div>
+      <div class="actions">
       ${
-        area.canDelete
-          ? html`<button @click=${() => area.deleteCorner()}>${words.delete_corner}</button>`
+        selection.canDelete
+          ? html`<button @click=${() => selection.deleteCorner()}>${words.delete_corner}</button>`
           : nothing
       }
-      <button class=${session.painting.brush.areas.erases ? "" : "primary"} @click=${() => session.painting.paintSelection(false)}>${words.fill}</button>
-      <button class=${session.painting.brush.areas.erases ? "primary" : ""} @click=${() => session.painting.paintSelection(true)}>${words.erase}</button>
-      <button class="icon quiet" aria-label=${words.discard} title=${words.discard} @click=${() => area.clear()}>${icon("close")}</button>
+      <strata-selection-border .selection=${selection}></strata-selection-border>
+      <button class=${erases ? "" : "primary"} ?disabled=${busy} @click=${() => void selection.paint(false)}>${words.fill}</button>
+      <button class=${erases ? "primary" : ""} ?disabled=${busy} @click=${() => void selection.paint(true)}>${words.erase}</button>
+      ${this.menu(selection)}
+      <button class="icon quiet discard" aria-label=${words.discard} title=${words.discard} @click=${() => selection.clear()}>${icon("close")}</button>
+      </div>
     </div>`;
+  }
+
+  private menu(selection: Selection): TemplateResult {
+    const item = (
+      glyph: IconName,
+      title: string,
+      act: () => void,
+      disabled = false,
+    ): TemplateResult =>
+      html`<button class="quiet" role="menuitem" ?disabled=${disabled} @click=${act}>${icon(glyph)}${title}</button>`;
+    return html`<strata-menu label=${words.more}>
+      ${item("undo", words.undo, () => selection.undo(), !selection.canUndo)}
+      ${item("redo", words.redo, () => selection.redo(), !selection.canRedo)}
+      <hr />
+      ${item("chart", words.statistics, () => this.request("selection-statistics"))}
+      ${item("plus", words.save, () => this.request("save-selection"))}
+      ${item("layers", words.saved, () => this.request("selections"))}
+    </strata-menu>`;
+  }
+
+  private request(dialog: SelectionRequest["dialog"]): void {
+    this.dispatchEvent(
+      new CustomEvent<SelectionRequest>("request", {
+        detail: { dialog },
+        bubbles: true,
+        composed: true,
+      }),
+    );
+  }
+
+  private tolerance({ wand }: Selection): TemplateResult | typeof nothing {
+    const { by, tolerance, mostTolerance } = wand;
+    if (mostTolerance <= 0) return nothing;
+    const told = texts.wand.amount[by](formatNumber(tolerance));
+    return html`<label title=${texts.wand.tolerance_hints[by]}>
+      <span>${texts.wand.tolerance}</span>
+      <input
+        type="range"
+        min="0"
+        max=${kSteps}
+        step="1"
+        aria-valuetext=${told}
+        .value=${String(Math.round((tolerance / mostTolerance) * kSteps))}
+        @input=${(event: Event) => wand.setTolerance((Number((event.target as HTMLInputElement).value) / kSteps) * mostTolerance)}
+      />
+      <span class="numeric" aria-hidden="true">${told}</span>
+    </label>`;
+  }
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "strata-selection-bar": StrataSelectionBar;
   }
 }

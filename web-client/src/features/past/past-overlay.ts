@@ -10,7 +10,7 @@ import { toldTime } from "../../domain/times";
 import { notices } from "../../ui/notices";
 import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
-import "../../ui/swipe-divider";
+import { comparedStyles } from "../../ui/swipe-divider";
 import { texts } from "../../texts";
 
 const words = texts.past;
@@ -28,46 +28,17 @@ export class StrataPastOverlay extends LitElement {
 
   static override styles = [
     sharedStyles,
+    comparedStyles,
     css`
-      :host {
-        overflow: hidden;
-        pointer-events: none;
-      }
-      canvas {
-        position: absolute;
-        inset: 0;
-        width: 100%;
-        height: 100%;
-        object-fit: contain;
-      }
       .frame {
         position: absolute;
         inset: 0;
         border: 4px solid var(--accent);
       }
-      .label {
-        position: absolute;
-        top: 0.625rem;
-        max-width: calc(50% - 1.5rem);
-        padding: var(--space-1) var(--space-3);
-        border-radius: var(--radius-round);
-        background: var(--accent);
-        color: var(--accent-ink);
-        font-size: var(--text-small);
-        font-weight: 600;
-      }
       .label.only {
         left: 50%;
         max-width: calc(100% - 1.5rem);
         transform: translateX(-50%);
-      }
-      .label.then {
-        left: 0.75rem;
-      }
-      .label.now {
-        right: 0.75rem;
-        background: var(--calm);
-        color: var(--calm-ink);
       }
       @media (max-width: 820px) {
         .label {
@@ -112,8 +83,8 @@ export class StrataPastOverlay extends LitElement {
       ></canvas>
       ${
         comparing
-          ? html`<span class="label then ellipsis">${when}</span>
-            <span class="label now ellipsis">${words.now}</span>
+          ? html`<span class="label left ellipsis">${when}</span>
+            <span class="label right open ellipsis">${words.now}</span>
             <strata-swipe-divider
               label=${words.divider}
               .share=${past.divider}

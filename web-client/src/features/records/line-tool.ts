@@ -15,7 +15,6 @@ const kDragReachPx = 6; // in CSS pixels; a longer movement is a drag
  */
 export class LineTool extends PlacesTool implements Tool {
   readonly name = "line";
-  private _corners: Point[] = [];
   // the current press, with the number of points before it
   private _press: { at: Point; first: boolean; dragged: boolean; points: number } | null = null;
 
@@ -26,10 +25,12 @@ export class LineTool extends PlacesTool implements Tool {
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
     const leadsOn = !this._press && this.points.length < this.most;
+    const pointer = leadsOn && this.pointer ? this.snapped(this.pointer) : null;
     return {
       points: this.points,
-      corners: this._corners,
-      pointer: leadsOn ? this.pointer : null,
+      corners: this.corners,
+      edge: pointer ? this.edgeTo(pointer) : [],
+      pointer,
       closable: false,
       area: false,
     };
@@ -38,14 +39,13 @@ export class LineTool extends PlacesTool implements Tool {
   down(sample: PointerSample): void {
     const at: Point = [sample.x, sample.y];
     const last = this.points[this.points.length - 1];
-    if (last && this.isAt(sample, last)) {
+    if (last && this.isAt(at, last)) {
       if (this.points.length > 1) this.finish();
       return;
     }
     const points = this.points.length;
     if (points === 0 ? !this.begin(sample) : points >= this.most) return;
-    if (points > 0) this.points.push(at);
-    this._corners = [...(points > 0 ? this._corners : []), at];
+    if (points > 0) this.addCorner(this.snapped(at));
     this._press = { at, first: points === 0, dragged: false, points };
     this.host.outlineChanged();
   }
@@ -75,15 +75,6 @@ export class LineTool extends PlacesTool implements Tool {
 
   protected override giveUp(): void {
     this._press = null;
-    this._corners = [];
     super.giveUp();
-  }
-
-  protected override takeBack(points: number): void {
-    const left = this.points.slice(0, points);
-    this._corners = this._corners.filter((corner) =>
-      left.some(([x, y]) => x === corner[0] && y === corner[1]),
-    );
-    super.takeBack(points);
   }
 }

@@ -76,6 +76,7 @@ export class OtherSurvey {
         saving: nothing,
         applied: nothing,
         snapshot: nothing,
+        selection: nothing,
         saved: nothing,
         takenUp: nothing,
         tool: nothing,

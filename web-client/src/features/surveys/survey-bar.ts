@@ -1,5 +1,5 @@
 // <strata-survey-bar>: the dates of the surveys of the object. A date opens its survey. The bar also
-// shows another survey next to the open one.
+// shows another survey next to the open one, and opens the dialog of the changes.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -125,6 +125,9 @@ export class StrataSurveyBar extends LitElement {
             </option>`,
         )}
       </select>
+      <button @click=${() => this.dispatchEvent(new CustomEvent("request", { detail: { dialog: "changes" } }))}>
+        ${words.changes.open}
+      </button>
     </section>`;
   }
 

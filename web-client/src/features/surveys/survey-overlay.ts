@@ -10,7 +10,7 @@ import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { sharedStyles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
-import "../../ui/swipe-divider";
+import { comparedStyles } from "../../ui/swipe-divider";
 import { texts } from "../../texts";
 import type { OtherSurvey } from "./other-survey";
 
@@ -29,36 +29,8 @@ export class StrataSurveyOverlay extends LitElement {
 
   static override styles = [
     sharedStyles,
+    comparedStyles,
     css`
-      :host {
-        overflow: hidden;
-        pointer-events: none;
-      }
-      canvas {
-        position: absolute;
-        inset: 0;
-        width: 100%;
-        height: 100%;
-        object-fit: contain;
-      }
-      .label {
-        position: absolute;
-        top: 0.625rem;
-        max-width: calc(50% - 1.5rem);
-        padding: var(--space-1) var(--space-3);
-        border-radius: var(--radius-round);
-        background: var(--calm);
-        color: var(--calm-ink);
-        font-size: var(--text-small);
-        font-weight: 600;
-      }
-      .label.other {
-        background: var(--accent);
-        color: var(--accent-ink);
-      }
-      .label.left {
-        left: 0.75rem;
-      }
       .label.right {
         right: 6rem; /* left of the cube and the bar on the stage */
       }
@@ -119,7 +91,7 @@ export class StrataSurveyOverlay extends LitElement {
         toldSurveyDate(survey.date),
         isOther && other.lost ? texts.connection.lost : "",
       ];
-      return html`<span class="label ${side} ${isOther ? "other" : ""} ellipsis">${text.filter(Boolean).join(": ")}</span>`;
+      return html`<span class="label ${side} ${isOther ? "" : "open"} ellipsis">${text.filter(Boolean).join(": ")}</span>`;
     };
     return html`<canvas
         width="2"

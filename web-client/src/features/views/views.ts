@@ -5,7 +5,7 @@ import { type Api, ifVersion } from "../../net/api";
 import { placeLike } from "../../math/fit-to-window";
 import type { View, ViewEvent } from "../../core/protocol.gen";
 import type { ViewContent } from "../../domain/views";
-import { KnownItems } from "../../net/known-items";
+import { FollowedItems } from "../../net/followed-items";
 import { notices } from "../../ui/notices";
 import { hashOfView, pathOfModel } from "../../ui/routes";
 import { texts } from "../../texts";
@@ -28,7 +28,7 @@ export interface ViewsHost {
 
 export class Views {
   private _me = "";
-  private readonly _known = new KnownItems<View>();
+  private readonly _known: FollowedItems<View>;
   // the last applied view, and the state after it was applied
   private _shown: { id: number; place: string; settings: string } | null = null;
   private _back: (() => void) | null = null;
@@ -38,7 +38,14 @@ export class Views {
     private readonly _api: Api,
     private readonly _modelId: string,
     private readonly _host: ViewsHost,
-  ) {}
+  ) {
+    this._known = new FollowedItems({
+      all: () => _api.all("GET /models/{model}/views", "views", { path: { model: _modelId } }),
+      one: (id) =>
+        _api.json("GET /models/{model}/views/{view}", { path: { model: _modelId, view: id } }),
+      changed: () => _host.changed(),
+    });
+  }
 
   // ── list ───────────────────────────────────────────────────────────────────────────────────────
 
@@ -51,7 +58,7 @@ export class Views {
   }
   /** The views in order of creation. */
   get all(): View[] {
-    return this._known.all.sort((a, b) => a.id - b.id);
+    return this._known.all;
   }
   find(id: number): View | null {
     return this._known.find(id);
@@ -76,41 +83,12 @@ export class Views {
     void this.load();
   }
 
-  async load(): Promise<void> {
-    if (
-      await this._known.load(() =>
-        this._api.all("GET /models/{model}/views", "views", { path: { model: this._modelId } }),
-      )
-    )
-      this._host.changed();
+  load(): Promise<void> {
+    return this._known.load();
   }
 
   onEvent({ event, view }: ViewEvent): void {
-    if (event === "deleted") this.drop(view);
-    else void this.read(view);
-  }
-
-  private async read(id: number): Promise<void> {
-    try {
-      this.put(
-        await this._api.json("GET /models/{model}/views/{view}", {
-          path: { model: this._modelId, view: id },
-        }),
-      );
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      // other errors keep the view until all views are loaded again
-      if (error.status === 404) this.drop(id);
-    }
-  }
-
-  private put(view: View): void {
-    if (this._known.put(view)) this._host.changed();
-  }
-
-  private drop(id: number): void {
-    this._known.drop(id);
-    this._host.changed();
+    this._known.onEvent(event, view);
   }
 
   // ── applying and returning ─────────────────────────────────────────────────────────────────────
@@ -215,7 +193,7 @@ export class Views {
       body: { ...called, ...content },
       header: { "Idempotency-Key": key },
     });
-    this.put(made);
+    this._known.put(made);
     this._back = null; // the current state is now a saved view, so users need no way back
     this.remember(made);
   }
@@ -226,7 +204,7 @@ export class Views {
    */
   async describe(view: View, called: { name: string; text: string }): Promise<void> {
     await this.newestAfter(view, async () =>
-      this.put(
+      this._known.put(
         await this._api.json("PATCH /models/{model}/views/{view}", {
           path: { model: this._modelId, view: view.id },
           body: called,
@@ -259,7 +237,7 @@ export class Views {
         header: ifVersion(view.version),
       }),
     );
-    this.drop(view.id);
+    this._known.drop(view.id);
   }
 
   private async putContent(
@@ -274,7 +252,7 @@ export class Views {
         header: ifVersion(view.version),
       });
     });
-    this.put(changed);
+    this._known.put(changed);
     return changed;
   }
 
@@ -282,7 +260,7 @@ export class Views {
     try {
       await work();
     } catch (error) {
-      if (error instanceof ApiError && error.status === 412) await this.read(id);
+      if (error instanceof ApiError && error.status === 412) await this._known.read(id);
       throw error;
     }
   }

@@ -211,6 +211,28 @@ describe("what is asked for", () => {
     ]);
   });
 
+  it("of a rollout has only the layers and surface images, and neither labels nor a direction", () => {
+    const choices: FigureChoices = { ...usualFigure(), from: "rollout", scale: 2 };
+    const rollout = { side: "inside" as const, relief: true };
+    const labels = { layer: 7, column: "name" };
+    expect(figureRequest(shown, choices, unwritten, face, labels)).toBeNull();
+    expect(figureRequest(shown, choices, unwritten, face, labels, rollout)).toEqual({
+      layers: shown.layers,
+      looks: shown.looks,
+      rollout,
+      scale: 2,
+      paper: "a4",
+      dpi: 300,
+      format: "pdf",
+      legend: true,
+    });
+    const ofView = figureRequest({ view: "12" }, choices, unwritten, face, labels, rollout)!;
+    expect([ofView.view, ofView.rollout, ofView.labels]).toEqual(["12", rollout, undefined]);
+    expect(figureRequest(shown, usualFigure(), unwritten, null, null, rollout)).not.toHaveProperty(
+      "rollout",
+    );
+  });
+
   it("is the same sheet as a small picture for the preview", () => {
     const request = figureRequest(
       shown,

@@ -8,7 +8,7 @@ import {
   type CleanupInput,
 } from "../../../src/features/layers/cleanup-request";
 import { targetsOf } from "../../../src/features/layers/pieces-dialog";
-import { RegionJob, reportText } from "../../../src/features/layers/region-job";
+import { RegionJob, reportText, type RegionJobHost } from "../../../src/features/layers/region-job";
 import { Api } from "../../../src/net/api";
 import { texts } from "../../../src/texts";
 
@@ -43,6 +43,22 @@ describe("the request for a clean-up", () => {
       operation: "majority",
       radius_mm: 4,
       apply: true,
+    });
+  });
+  it("opens and closes regions of a value, or of the only one", () => {
+    expect(cleanupOf({ ...input, operation: "open", from: 7, inside: true }, true)).toEqual({
+      operation: "open",
+      width_mm: 2,
+      apply: true,
+    });
+    expect(cleanupOf({ ...input, operation: "close", of: "3" }, false)).toEqual({
+      operation: "close",
+      width_mm: 2,
+      of: 3,
+      apply: false,
+    });
+    expect(cleanupOf({ ...input, operation: "open", width: "" }, true)).toMatchObject({
+      field: "width_mm",
     });
   });
   it("paints or erases the border of one class, or of all", () => {
@@ -107,7 +123,7 @@ describe("the request for records of pieces", () => {
   });
 });
 
-describe("what a preview tells", () => {
+describe("the text of a preview", () => {
   const report: CleanupReport = {
     operation: "sieve",
     applied: false,
@@ -157,18 +173,20 @@ describe("the job of a dialog", () => {
       const status = statuses.shift() ?? 200;
       return Promise.resolve(new Response(JSON.stringify(body), { status }));
     });
-    work = new RegionJob(
-      () => api,
-      () => {},
-    );
+    work = new RegionJob({
+      session: { api },
+      shadowRoot: null,
+      addController: () => {},
+      requestUpdate: () => {},
+    } as unknown as RegionJobHost);
   });
   afterEach(() => vi.useRealTimers());
 
   it("is busy until it is done, and starts only once", async () => {
     answers = [job("queued"), job("running"), job("done", { cleanup: report })];
-    const done = work.run(start);
+    const done = work.run(start, true);
     expect(work.isBusy).toBe(true);
-    expect(await work.run(start)).toBeNull();
+    expect(await work.run(start, true)).toBeNull();
     await vi.advanceTimersByTimeAsync(400);
     expect(work.job?.state).toBe("running");
     await vi.advanceTimersByTimeAsync(400);
@@ -184,7 +202,7 @@ describe("the job of a dialog", () => {
       field: "radius_mm",
     };
     answers = [job("failed", { problem })];
-    expect(await work.run(start)).toBeNull();
+    expect(await work.run(start, true)).toBeNull();
     expect([work.problem, work.field]).toEqual(["At most 9 mm.", "radius_mm"]);
     work.reset();
     expect([work.problem, work.field]).toEqual(["", ""]);
@@ -192,12 +210,63 @@ describe("the job of a dialog", () => {
   it("tells why the server refused it", async () => {
     answers = [{ title: "Layer is locked", status: 403, detail: "Ask a curator.", field: "layer" }];
     statuses = [403];
-    expect(await work.run(start)).toBeNull();
+    expect(await work.run(start, true)).toBeNull();
     expect([work.isBusy, work.problem]).toEqual([false, "Ask a curator."]);
+  });
+  it("does not show the result of a preview if the input has changed since", async () => {
+    const problem = { title: "Radius", status: 422, detail: "Too large.", field: "radius_mm" };
+    for (const end of [job("done", { cleanup: report }), job("failed", { problem })]) {
+      answers = [job("running"), end];
+      const done = work.run(start, false);
+      await vi.advanceTimersByTimeAsync(1);
+      work.reset();
+      await vi.advanceTimersByTimeAsync(800);
+      await done;
+      expect([work.isBusy, work.report, work.problem, work.field]).toEqual([false, null, "", ""]);
+    }
+  });
+  it("tells the result of a change also if the input has changed since", async () => {
+    answers = [
+      job("running"),
+      job("failed", { problem: { title: "Locked", status: 403, detail: "Ask." } }),
+    ];
+    const done = work.run(start, true);
+    await vi.advanceTimersByTimeAsync(1);
+    work.reset();
+    await vi.advanceTimersByTimeAsync(800);
+    expect(await done).toBeNull();
+    expect(work.problem).toBe("Ask.");
+  });
+  it("keeps the focus in its dialog when the focused button disappears", () => {
+    const focused: string[] = [];
+    const root = {
+      activeElement: {
+        matches: (selector: string) => selector.includes(".stop"),
+      } as Element | null,
+      querySelector: (selector: string) => ({ focus: () => focused.push(selector) }),
+    };
+    const host = { session: { api }, shadowRoot: root, addController: () => {} };
+    const other = new RegionJob(host as unknown as RegionJobHost);
+    other.hostUpdate();
+    root.activeElement = null;
+    other.hostUpdated();
+    expect(focused).toHaveLength(1);
+    other.hostUpdate(); // nothing in the dialog has the focus
+    other.hostUpdated();
+    expect(focused).toHaveLength(1);
+  });
+  it("is canceled when its dialog is closed", async () => {
+    answers = [job("running"), job("running"), job("cancelled")];
+    const done = work.run(start, true);
+    await vi.advanceTimersByTimeAsync(1);
+    work.hostDisconnected();
+    await vi.advanceTimersByTimeAsync(800);
+    expect(await done).toBeNull();
+    expect(asked.filter((each) => each === "DELETE /jobs/5")).toHaveLength(1);
   });
   it("can be canceled before the server has confirmed its start", async () => {
     answers = [job("queued"), job("cancelled")];
-    const done = work.run(start);
+    const done = work.run(start, true);
     await work.cancel();
     expect(asked).toEqual(["POST /models/3/layers/9/cleanup"]);
     await vi.advanceTimersByTimeAsync(800);
@@ -206,7 +275,7 @@ describe("the job of a dialog", () => {
   });
   it("can be canceled", async () => {
     answers = [job("running"), job("running"), job("cancelled")];
-    const done = work.run(start);
+    const done = work.run(start, true);
     await vi.advanceTimersByTimeAsync(1);
     await work.cancel();
     expect(asked).toContain("DELETE /jobs/5");

@@ -83,6 +83,13 @@ describe("the names that an expression can contain", () => {
     expect(textsOf(all, "Surface")).toEqual(["x", "y", "z", "area"]);
     expect(textsOf(of([], true), "Surface")).toContain("slope");
   });
+  it("are functions along the surface only in computed layers", () => {
+    const functions = "Functions and operators";
+    expect(textsOf(of([], true), functions)).toEqual(
+      expect.arrayContaining(["distance(", "within(", "nearest(", "focal_mean("]),
+    );
+    expect(textsOf(of([]), functions)).not.toContain("distance(");
+  });
   it("are found by their text, their name and their group", () => {
     const found = (search: string): string[] =>
       foundIn(nameGroups(all), search).flatMap(({ names }) => names.map(({ text }) => text));
@@ -125,7 +132,9 @@ describe("a name in a text", () => {
 
 describe("the examples", () => {
   const examples = (names: NamesOf): string[] =>
-    examplesFor(names, { min: [0, 0, 0], max: [10, 10, 80] }).map(({ text }) => text);
+    examplesFor(names, { bounds: { min: [0, 0, 0], max: [10, 10, 80] }, unit: "mm" }).map(
+      ({ text }) => text,
+    );
   it("name the model's own layers", () => {
     expect(examples(all)).toEqual([
       "moisture > 50",
@@ -135,6 +144,7 @@ describe("the examples", () => {
     ]);
     expect(examples(of([cracks]))).toEqual(["valid(cracks)", "z > 40"]);
     expect(examples(of([moisture], true))).toEqual(["moisture * 2", "moisture > 50", "slope"]);
+    expect(examples(of([cracks], true))).toEqual(["within(cracks, 2)", "valid(cracks)", "slope"]);
   });
   it("need no layer", () => {
     expect(examples(of([]))).toEqual(["z > 40"]);

@@ -8,7 +8,8 @@ import {
   type ShapeInput,
 } from "../../../src/features/layers/shape-kinds";
 import { texts } from "../../../src/texts";
-import { likelyToleranceMm, shareText } from "../../../src/features/layers/transfer-dialog";
+import { likelyToleranceMm } from "../../../src/domain/survey-changes";
+import { shareText } from "../../../src/domain/measure";
 import { Api } from "../../../src/net/api";
 import type { Job, Model } from "../../../src/core/types";
 
@@ -16,6 +17,9 @@ const input: ShapeInput = {
   kind: "roughness",
   radius: "",
   distance: "",
+  normal: "",
+  projection: "",
+  registration: "",
   rays: "",
   absolute: false,
   model: "",
@@ -36,6 +40,21 @@ describe("a recipe from what was filled in", () => {
       kind: "model_distance",
       model: "7",
       distance_mm: 30,
+    });
+    expect(
+      recipeOf({
+        ...input,
+        kind: "significant_change",
+        model: "7",
+        radius: "1",
+        registration: "0",
+        projection: "12.5",
+      }),
+    ).toEqual({
+      kind: "significant_change",
+      model: "7",
+      registration_mm: 0,
+      projection_scale_mm: 12.5,
     });
     expect(recipeOf({ ...input, kind: "vertex_property", property: "pot.ply/a/b" })).toEqual({
       kind: "vertex_property",
@@ -60,11 +79,15 @@ describe("a recipe from what was filled in", () => {
         field: "radius",
       });
     expect(recipeOf({ ...input, kind: "model_distance" })).toMatchObject({ field: "model" });
+    expect(recipeOf({ ...input, kind: "change" })).toMatchObject({ field: "model" });
+    const change = { ...input, kind: "change" as const, model: "7" };
+    expect(recipeOf({ ...change, registration: "-1" })).toMatchObject({ field: "registration" });
+    expect(recipeOf({ ...change, normal: "0" })).toMatchObject({ field: "normal" });
     expect(recipeOf({ ...input, kind: "vertex_property" })).toMatchObject({ field: "property" });
   });
   it("has words for every kind that the server knows", () => {
     const kinds = kShapeGroups.flatMap((group) => group.kinds.map(({ kind }) => kind));
-    expect(new Set(kinds).size).toBe(12);
+    expect(new Set(kinds).size).toBe(15);
     for (const group of kShapeGroups)
       for (const { title, lead } of group.kinds) expect(title && lead).toBeTruthy();
   });

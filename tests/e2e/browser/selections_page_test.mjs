@@ -1,0 +1,243 @@
+// The selection on the page: wand and polygon select together, the border is changed, and the
+// selection is saved, loaded after a reload, painted, renamed and deleted. A polygon follows the
+// contour of the pot.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser } from "../support/js/browser.mjs";
+import { attach_log, test } from "../support/js/cases.mjs";
+import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { texts_of } from "../support/js/texts.mjs";
+
+const words = texts_of("en");
+
+const base = "/models/demo-pot";
+const kUnits = { "mm²": 1e-6, "cm²": 1e-4, "m²": 1 };
+const kName = "Front and handle side";
+
+const button = (name) => page.getByRole("button", { name, exact: true });
+const radio = (name) => page.getByRole("radio", { name, exact: true });
+const selection = () => page.getByRole("group", { name: words.selection.title, exact: true });
+const list = () => page.locator("strata-selections-dialog");
+const row = (name) => list().locator("li", { hasText: name });
+const saved = async () => (await server.json("GET", `${base}/selections`)).selections;
+const painted_m2 = async () => (await server.json("GET", `${base}/layers/test/statistics`)).area_m2;
+const shot = async (name) => {
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `selections_${name}.png`) });
+};
+
+/** Returns the displayed area of the selection in m², or null while it is measured. */
+async function shown_m2() {
+  const text = await selection().getByRole("status").innerText();
+  const found = /([\d.,]+)\s*(mm²|cm²|m²)/.exec(text);
+  return found ? Number(found[1].replaceAll(",", "")) * kUnits[found[2]] : null;
+}
+/** Waits until the selection is measured and has another area than before. */
+const other_than = (before, what) =>
+  wait_for(async () => {
+    const area = await shown_m2();
+    return area !== null && area !== before ? area : null;
+  }, what);
+
+async function click(...points) {
+  const box = await browser.stage_box();
+  for (const [x, y] of points)
+    await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
+}
+async function polygon(points) {
+  await click(...points);
+  await page.keyboard.press("Enter");
+}
+async function from_menu(item) {
+  await selection().getByRole("button", { name: words.selection.more, exact: true }).click();
+  await selection().getByRole("menuitem", { name: item, exact: true }).click();
+}
+async function change_border(mm, way) {
+  await selection().getByRole("button", { name: words.selection.border.open, exact: true }).click();
+  const controls = page.getByRole("dialog", { name: words.selection.border.title });
+  await controls.getByLabel(words.selection.border.length).fill(mm);
+  await controls.getByRole("button", { name: way, exact: true }).click();
+  return controls;
+}
+async function choose_layer() {
+  await browser.drawn();
+  await button(words.layers.select("Test")).click();
+}
+
+let browser, page, server, kept_m2;
+
+test.beforeAll(async () => {
+  browser = await Browser.open();
+  ({ page } = browser);
+  server = new StrataServer({ demo: true });
+  await server.start();
+  const palette = { mode: "categorical", points: [{ at: 1, color: "#ff00ffff", label: "Test" }] };
+  await server.json("POST", `${base}/layers`, {
+    name: "Test",
+    type: "u8",
+    resolution: 2048,
+    palette,
+  });
+  // otherwise the page asks to confirm the scale
+  await server.json("PATCH", base, { scale_verified: true });
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await choose_layer();
+});
+
+test("the wand selects, and a polygon is added to it with the button", async () => {
+  await page.keyboard.press("Shift+G");
+  await radio(words.wand.ways.normal).click();
+  await click([0.5, 0.5]);
+  const first = await other_than(null, "the first part");
+  await radio(words.selection.modes.add).click();
+  await page.keyboard.press("a");
+  assert.equal(await shown_m2(), first, "the selection changed with the tool");
+  await polygon([
+    [0.36, 0.52],
+    [0.4, 0.52],
+    [0.4, 0.6],
+    [0.36, 0.6],
+  ]);
+  assert.ok((await other_than(first, "the added part")) > first);
+  await shot("added");
+});
+
+test("a polygon with Alt is subtracted", async () => {
+  const before = await shown_m2();
+  await page.keyboard.down("Alt");
+  await click([0.49, 0.48], [0.51, 0.48], [0.51, 0.52], [0.49, 0.52]);
+  await page.keyboard.up("Alt");
+  await page.keyboard.press("Enter");
+  assert.ok((await other_than(before, "the subtracted part")) < before);
+});
+
+test("the border grows by a length, and a wrong length is refused", async () => {
+  const before = await shown_m2();
+  const controls = await change_border("0", words.selection.border.grow);
+  await controls.getByRole("alert").getByText(words.selection.border.wrong).waitFor();
+  await shot("border");
+  await page.keyboard.press("Escape");
+  await controls.waitFor({ state: "hidden" });
+  assert.equal(await shown_m2(), before, "Escape in the controls changed the selection");
+  await change_border("3", words.selection.border.grow);
+  const grown = await other_than(before, "the grown selection");
+  assert.ok(grown > before);
+  await page.keyboard.press("Escape");
+  await from_menu(words.selection.undo);
+  assert.equal(await other_than(grown, "the undone change"), before);
+  await from_menu(words.selection.redo);
+  kept_m2 = await other_than(before, "the redone change");
+  assert.equal(kept_m2, grown);
+  assert.equal(await painted_m2(), 0, "a selection painted by itself");
+});
+
+test("its statistics show its size and the layer's values", async () => {
+  await from_menu(words.selection.statistics);
+  const dialog = page.locator("strata-selection-statistics");
+  await dialog.getByText(words.selection.in_layer("Test")).waitFor();
+  await shot("statistics");
+  await dialog.getByRole("button", { name: words.close, exact: true }).click();
+  await dialog.waitFor({ state: "detached" });
+});
+
+test("it is saved for everyone", async () => {
+  await from_menu(words.selection.save);
+  const dialog = page.locator("strata-save-selection-dialog");
+  await dialog.getByLabel(words.saved_selections.fields.name).fill(kName);
+  await dialog.getByLabel(words.saved_selections.for_everyone).check();
+  await shot("save");
+  await dialog.getByRole("button", { name: words.save, exact: true }).click();
+  await dialog.waitFor({ state: "detached" });
+  const [made] = await saved();
+  assert.deepEqual([made.name, made.audience, made.within.grow_mm], [kName, "everyone", 3]);
+  assert.deepEqual(
+    made.within.parts.map(({ combine }) => combine ?? "add"),
+    ["add", "add", "subtract"],
+  );
+});
+
+test("after a reload it is loaded from the list, and has the same area", async () => {
+  await page.reload();
+  await choose_layer();
+  await page.keyboard.press("Shift+G");
+  await button(words.selection.saved).click();
+  await row(kName).getByText(words.saved_selections.audiences.everyone).waitFor();
+  await row(kName).locator("button.go").click();
+  await list().waitFor({ state: "detached" });
+  assert.equal(await other_than(null, "the loaded selection"), kept_m2);
+  await page.locator("strata-stage .lit").waitFor();
+  await shot("loaded");
+});
+
+test("it is painted as one edit", async () => {
+  await selection().getByRole("button", { name: words.selection.fill, exact: true }).click();
+  await selection().waitFor({ state: "detached" });
+  const area_m2 = await painted_m2();
+  assert.ok(Math.abs(area_m2 / kept_m2 - 1) < 0.02, `${area_m2} m² instead of ${kept_m2} m²`);
+  await page.locator("strata-stage .surface").focus();
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  assert.equal(await painted_m2(), 0);
+});
+
+test("a polygon that snaps to edges follows the contour of the pot", async () => {
+  await page.keyboard.press("Shift+A");
+  await browser.rested();
+  const box = await browser.stage_box();
+  const { data, width } = await browser.picture(box);
+  const row = Math.round(0.5 * box.height);
+  const pixel = (x) => [0, 1, 2].map((c) => data[4 * (row * width + x) + c]);
+  const differs = (x) => pixel(x).some((value, c) => Math.abs(value - pixel(4)[c]) > 40);
+  const left = [...Array(width).keys()].find(differs) / width; // of the pot
+  const outline = page.locator("strata-stage svg.over polygon");
+  const points = () => outline.getAttribute("points");
+  await click([left, 0.5]);
+  await browser.point(left + 0.08, 0.32);
+  await outline.waitFor();
+  const count = async () => (await points()).split(" ").length;
+  await wait_for(async () => (await count()) > 3, "a path along the contour");
+  await shot("snapped");
+  await click([left + 0.08, 0.32]);
+  const fixed = await points();
+  await page.keyboard.press("Shift+A");
+  await browser.point(0.5, 0.45);
+  await wait_for(async () => (await points()) !== fixed, "the segment to the pointer");
+  await click([0.5, 0.45]);
+  await page.keyboard.press("Enter");
+  assert.ok((await other_than(null, "the area at the contour")) > 0);
+  assert.equal(await page.locator("strata-stage svg.over circle").count(), 0);
+  await page.keyboard.press("Escape");
+  await selection().waitFor({ state: "detached" });
+});
+
+test("it is renamed and deleted in the list", async () => {
+  await button(words.selection.saved).click();
+  const options = (name) => row(name).getByRole("button", { name: words.layers.options(name) });
+  await options(kName).click();
+  await row(kName).getByRole("menuitem", { name: words.saved_selections.rename }).click();
+  await list().getByLabel(words.saved_selections.fields.name).fill("Obverse");
+  await list().getByRole("button", { name: words.save, exact: true }).click();
+  await row("Obverse").waitFor();
+  assert.equal((await saved())[0].name, "Obverse");
+  await options("Obverse").click();
+  await row("Obverse").getByRole("menuitem", { name: words.layers.delete }).click();
+  await page
+    .locator("strata-dialog")
+    .getByRole("button", { name: words.delete, exact: true })
+    .click();
+  await list().getByText(words.saved_selections.none).waitFor();
+  assert.deepEqual(await saved(), []);
+});
+
+test("the page has nothing to complain of, and the server ends with a clean log", async () => {
+  browser.assert_no_complaints([]);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+});
+
+test.afterEach(({}, info) => attach_log(info, server));
+test.afterAll(async () => {
+  await browser?.close();
+  await server?.remove();
+});
