@@ -6,7 +6,8 @@
 
 Makes the models, layers and edits with SQL: copies of one imported model, whose layers share a
 tenth of the edits in one large model. The edits are spread over two years and several people. Each
-edit has two revisions, copies of a real stroke, which paint and remove the same texels in turn.
+edit has two revisions, copies of a real stroke, which paint and remove the same texels in turn. As
+in a real journal, every 64th revision of a tile has a key tile.
 With --merge, the edits are batches of strokes (20 for each stroke), and the server merges the
 strokes of the large model before the measurement. The script also prints the size of the journal
 before and after the merge.
@@ -34,6 +35,7 @@ OPEN_S, LIST_MS = 2.0, 200
 TIMES = 5
 PEOPLE = ("ada", "ben", "cleo", "dora", "emil", "fritz", "gina", "hugo")
 BATCHES = 20  # of a stroke
+KEY_TILE_EVERY = 64  # revisions of a tile, as in server/room/pipeline/edit_pipeline.cpp
 MODEL = "sheet"
 TABLES = ("edits", "tile_revisions", "tile_segments", "edit_batches")
 
@@ -64,7 +66,9 @@ def copy_layers(server, count):
 
 def make_edits(server, count):
     """A tenth of the edits is in the large model. The trigger of the activity is off, because it
-    would run for each statement with all rows: the script adds lines of the activity itself."""
+    would run for each statement with all rows: the script adds lines of the activity itself. The
+    texels of a layer are painted after its odd revisions. The first layer has the real stroke too.
+    """
     server.sql(
         f"""
         SET session_replication_role = replica;
@@ -74,7 +78,8 @@ def make_edits(server, count):
         CREATE TEMP TABLE share AS SELECT model_id, sequence AS begin,
           CASE WHEN place = 0 THEN {count} / 10 ELSE {count} * 9 / 10 / greatest((SELECT count(*) FROM all_models) - 1, 1) END AS edits
           FROM (SELECT DISTINCT model_id, place FROM place) p JOIN all_models m ON m.id = p.model_id;
-        CREATE TEMP TABLE made AS SELECT s.model_id, s.begin + n AS sequence, p.layer_id, n, s.edits
+        CREATE TEMP TABLE made AS SELECT s.model_id, s.begin + n AS sequence, p.layer_id, n, s.edits,
+            row_number() OVER (PARTITION BY p.layer_id ORDER BY n) + (p.layer_id = (SELECT min(id) FROM all_layers))::integer AS revision
           FROM share s CROSS JOIN LATERAL generate_series(1, s.edits) n
           JOIN place p ON p.model_id = s.model_id AND p.layer_place = (n / {2 * BATCHES}) % p.layers;
         INSERT INTO edits (model_id, sequence, id, layer_id, stroke, user_name, op, record, answer, time)
@@ -84,8 +89,10 @@ def make_edits(server, count):
             jsonb_build_object('sequence', sequence, 'texels_changed', 1000, 'area_m2', 0.001),
             now() - interval '2 years' + interval '2 years' * n / edits - interval '1 hour'
           FROM made;
-        INSERT INTO tile_revisions (layer_id, tile_y, tile_x, sequence, difference)
-          SELECT m.layer_id, r.tile_y, r.tile_x, m.sequence, r.difference FROM made m CROSS JOIN stroke_of_layer r;
+        INSERT INTO tile_revisions (layer_id, tile_y, tile_x, sequence, difference, key_tile)
+          SELECT m.layer_id, r.tile_y, r.tile_x, m.sequence, r.difference,
+            CASE WHEN m.revision % {KEY_TILE_EVERY} = 1 THEN r.key_tile END
+          FROM made m CROSS JOIN stroke_of_layer r;
         UPDATE all_models m SET sequence = s.begin + s.edits FROM share s WHERE s.model_id = m.id;
         UPDATE all_layers l SET sequence = d.last FROM (SELECT layer_id, max(sequence) AS last FROM made GROUP BY layer_id) d
           WHERE d.layer_id = l.id;
@@ -114,19 +121,20 @@ def seconds(work):
 def merge(server):
     """Keeps the large model open until its strokes are merged."""
     newest = int(server.sql(f"SELECT sequence FROM all_models WHERE slug = '{MODEL}'"))
-    with LiveClient(server, MODEL) as live:
-        live.hello()
-        begun = time.monotonic()
-        wait_for(
-            lambda: server.sql(
-                f"SELECT coalesce(max(j.sequence), 0) >= {newest} FROM merged_journals j "
+
+    def is_merged():
+        # The server ends a connection that does not answer, so each question opens the model.
+        with LiveClient(server, MODEL) as live:
+            live.hello()
+            merged = server.sql(
+                f"SELECT coalesce(max(j.sequence), 0) FROM merged_journals j "
                 f"JOIN all_models m ON m.id = j.model_id WHERE m.slug = '{MODEL}'"
             )
-            == "t",
-            "the strokes to be merged",
-            3600,
-        )
-        print(f"merged {newest} edits in {time.monotonic() - begun:.0f} s", flush=True)
+        return int(merged) >= newest
+
+    begun = time.monotonic()
+    wait_for(is_merged, "the strokes to be merged", 3600, 5)
+    print(f"merged {newest} edits in {time.monotonic() - begun:.0f} s", flush=True)
     for table in TABLES:
         server.sql(f"VACUUM (FULL, ANALYZE) {table}")
 
@@ -187,7 +195,7 @@ def make_site(server, models, layers, edits):
     assert server.stop() == 0
     server.start()
     server.sql(
-        "CREATE TABLE stroke_of_layer AS SELECT tile_y, tile_x, difference FROM tile_revisions "
+        "CREATE TABLE stroke_of_layer AS SELECT tile_y, tile_x, difference, key_tile FROM tile_revisions "
         "ORDER BY tile_y, tile_x LIMIT 2"
     )
     copy_models(server, models)

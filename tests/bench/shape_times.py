@@ -31,6 +31,7 @@ KINDS = [
     "ambient_occlusion",
     "boundary_distance",
 ]
+COMPARISONS = ["model_distance", "change", "significant_change"]
 CANCELLED_AFTER = (0.25, 0.5, 0.85)
 LONG_S = 3600
 
@@ -136,7 +137,7 @@ def main():
             other = server.import_model(
                 read(asked.other), os.path.basename(asked.other), name="Other", unit=asked.unit
             )
-            kinds.append({"kind": "model_distance", "model": str(other["id"])})
+            kinds += [{"kind": kind, "model": str(other["id"])} for kind in COMPARISONS]
         for recipe in kinds:
             body = {"name": recipe["kind"], "resolution": asked.resolution, "compute": recipe}
             figures, job = measure(server, recipe["kind"], path + "/layers", body)
