@@ -50,9 +50,9 @@ add_library(strata_raptor INTERFACE)
 target_include_directories(strata_raptor SYSTEM INTERFACE ${RAPTOR_INCLUDE})
 target_link_libraries(strata_raptor INTERFACE ${RAPTOR_LIBRARY})
 
-# Only the headers of Boost 1.81 are used (Asio, Uuid, and Beast, which is compiled in one unit). If
-# the machine has another version, `./run` and `./test` unpack 1.81 into build/deps and pass its
-# folder here. The installed packages do not change.
+# Only the headers of Boost 1.81 are used (Asio, Math, Uuid, and Beast, which is compiled in one
+# unit). If the machine has another version, `./run` and `./test` unpack 1.81 into build/deps and
+# pass its folder here. The installed packages do not change.
 set(STRATA_BOOST_INCLUDE "" CACHE PATH "Folder that holds boost/version.hpp of 1.81, when it is not the system's")
 add_library(strata_boost INTERFACE)
 if(STRATA_BOOST_INCLUDE)

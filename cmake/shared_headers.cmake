@@ -14,13 +14,14 @@ set(STRATA_NET_HEADERS ${STRATA_STANDARD_HEADERS}
 set(STRATA_TESTS_HEADERS ${STRATA_STANDARD_HEADERS} <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp>)
 
 # strata_shared_headers(TARGET standard|net|tests [COMPUTES]). COMPUTES is for targets that compute
-# texels and triangles. For other targets under sanitizers, the compiler needs more time to optimize
-# than the unoptimized tests need to run.
+# texels and triangles. STRATA_QUICK_BUILD does not optimize other targets, because the compiler needs
+# more time for it than the tests need to run without it. Tests that are not sanitized are optimized,
+# because some of them compute what shaders draw.
 function(strata_shared_headers target kind)
   cmake_parse_arguments(HEADERS "COMPUTES" "" "" ${ARGN})
   string(TOUPPER STRATA_${kind}_HEADERS list)
   set(options)
-  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize" AND NOT HEADERS_COMPUTES)
+  if(STRATA_QUICK_BUILD AND NOT HEADERS_COMPUTES AND (STRATA_SANITIZED OR NOT kind STREQUAL tests))
     set(kind ${kind}_unoptimised)
     set(options -O0)
   endif()
@@ -40,12 +41,12 @@ function(strata_shared_headers target kind)
   target_precompile_headers(${target} REUSE_FROM ${headers})
 endfunction()
 
-# strata_computes(FILE…): optimizes files that compute texels, also under sanitizers and in a target
-# that is not optimized then. They share no headers, because their options differ from those of the
-# headers.
+# strata_computes(FILE…): optimizes files that compute texels, also in a target that
+# STRATA_QUICK_BUILD does not optimize. They share no headers, because their options differ from those
+# of the headers.
 function(strata_computes)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  if(STRATA_QUICK_BUILD)
     set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O1 SKIP_PRECOMPILE_HEADERS ON)
   endif()
 endfunction()

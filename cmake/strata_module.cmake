@@ -21,15 +21,16 @@ function(strata_module name)
   # namespace also exists in another file of the module.
   if(STRATA_UNITY AND name MATCHES "^(app|net|store)$")
     # at the end of the module's folder, where the properties of its files are known
-    cmake_language(EVAL CODE "cmake_language(DEFER CALL strata_join_files strata_${name})")
+    cmake_language(EVAL CODE "cmake_language(DEFER CALL strata_join_files strata_${name} Unity)")
   endif()
   target_link_libraries(strata_${name} PUBLIC ${MODULE_PUBLIC} PRIVATE ${MODULE_PRIVATE} strata_warnings)
 endfunction()
 
-# strata_join_files(TARGET): compiles the files of a target in units of eight files. CMake's own
-# unity builds contain the absolute path of each file, so ccache had to preprocess the units in
-# each clone of the project. These units have the same content in all clones.
-function(strata_join_files target)
+# strata_join_files(TARGET FOLDER): compiles the files of a target in units of eight files, which it
+# writes to this folder of the build. CMake's own unity builds contain the absolute path of each file,
+# so ccache had to preprocess the units in each clone of the project. These units have the same
+# content in all clones.
+function(strata_join_files target folder)
   get_target_property(files ${target} SOURCES)
   set(joined)
   foreach(file ${files})
@@ -45,11 +46,12 @@ function(strata_join_files target)
       list(APPEND joined ${file})
     endif()
   endforeach()
-  if(NOT joined)
+  list(LENGTH joined count)
+  if(count LESS 2)
     return()
   endif()
   set_source_files_properties(${joined} PROPERTIES HEADER_FILE_ONLY ON)
-  set(folder ${CMAKE_CURRENT_BINARY_DIR}/Unity)
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/${folder})
   file(RELATIVE_PATH from_folder ${folder} ${CMAKE_CURRENT_SOURCE_DIR})
   set(number 0)
   while(joined)

@@ -276,6 +276,13 @@ await_background() {
   return "$status"
 }
 
+# Prints random bytes for `shuf` that only the commit decides. A history that is short or absent has
+# too few of them, so numbers follow.
+bytes_of_commit() {
+  git rev-list --max-count=100 HEAD 2>/dev/null
+  printf '%s\n' {1..1000}
+}
+
 # The number of compilers that run at the same time: one for each core, fewer if memory is short.
 # The compiler can need 1.2 GB of memory for one source file.
 build_jobs() {

@@ -41,7 +41,7 @@ inline Surface cut_surface(const Shape& shape, const Cuts& cuts, int resolution)
     if (fresh) mesh.positions.push_back(p);
     return found->second;
   };
-  // Each chart lies in a square of the atlas.
+  // Each chart is in a square of the atlas.
   const int side = static_cast<int>(std::ceil(std::sqrt(cuts.columns * cuts.rows)));
   double widest = 0;
   const auto center_of = [&](int column, int row) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,6 +17,8 @@ constexpr int kSheetWidth = 192, kSheetHeight = 128, kSheetResolution = 512;
 struct SheetCuts {
   // Columns and rows of the seams, multiples of 8. The parts are moved apart in the atlas.
   std::vector<int> columns{}, rows{};
+  // Degrees: turns the part to the right of the only column. Use it without rows.
+  double turn = 0;
 };
 
 inline Surface cut_sheet(const SheetCuts& cuts = {}) {
@@ -30,13 +33,22 @@ inline Surface cut_sheet(const SheetCuts& cuts = {}) {
     return before;
   };
   mesh::Atlas atlas;
+  const auto turned = [&](const glm::dvec2& at) {
+    const double cut = cuts.columns.front(), turn = cuts.turn * std::numbers::pi / 180;
+    const glm::dvec2 center((cut + kSheetWidth) / 2, kSheetHeight / 2.0), way = at - center;
+    const double reach = std::ceil(glm::distance(center, glm::dvec2(cut, 0)));
+    return glm::dvec2(cut + kMargin + kGap + reach, kMargin + reach) +
+           glm::dvec2(way.x * std::cos(turn) - way.y * std::sin(turn),
+                      way.x * std::sin(turn) + way.y * std::cos(turn));
+  };
   const auto add = [&](int x, int y, std::initializer_list<std::pair<int, int>> corners) {
-    const glm::vec2 moved(kMargin + gaps(cuts.columns, x), kMargin + gaps(cuts.rows, y));
+    const glm::dvec2 moved(kMargin + gaps(cuts.columns, x), kMargin + gaps(cuts.rows, y));
+    const bool turns = cuts.turn != 0 && x * kCell >= cuts.columns.front();
     for (const auto& [dx, dy] : corners) {
       const auto corner = static_cast<std::uint32_t>((y + dy) * (columns + 1) + x + dx);
       sheet.triangles.push_back(corner);
-      atlas.corner_uvs.push_back((glm::vec2(sheet.positions[corner]) + moved) /
-                                 float(kSheetResolution));
+      const glm::dvec2 at(sheet.positions[corner]);
+      atlas.corner_uvs.push_back((turns ? turned(at) : at + moved) / double(kSheetResolution));
     }
   };
   for (int y = 0; y < rows; ++y)
