@@ -1,6 +1,6 @@
 // The selection on the page: wand and polygon select together, the border is changed, and the
 // selection is saved, loaded after a reload, painted, renamed and deleted. A polygon follows the
-// contour of the pot.
+// contour of the pot, and a lasso moves to it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -181,15 +181,20 @@ test("it is painted as one edit", async () => {
   assert.equal(await painted_m2(), 0);
 });
 
-test("a polygon that snaps to edges follows the contour of the pot", async () => {
-  await page.keyboard.press("Shift+A");
+/** Returns the place of the pot's contour on the left in the middle of the view. */
+async function left_contour() {
   await browser.rested();
   const box = await browser.stage_box();
   const { data, width } = await browser.picture(box);
   const row = Math.round(0.5 * box.height);
   const pixel = (x) => [0, 1, 2].map((c) => data[4 * (row * width + x) + c]);
   const differs = (x) => pixel(x).some((value, c) => Math.abs(value - pixel(4)[c]) > 40);
-  const left = [...Array(width).keys()].find(differs) / width; // of the pot
+  return [...Array(width).keys()].find(differs) / width;
+}
+
+test("a polygon that snaps to edges follows the contour of the pot", async () => {
+  await page.keyboard.press("Shift+A");
+  const left = await left_contour();
   const outline = page.locator("strata-stage svg.over polygon");
   const points = () => outline.getAttribute("points");
   await click([left, 0.5]);
@@ -207,6 +212,35 @@ test("a polygon that snaps to edges follows the contour of the pot", async () =>
   await page.keyboard.press("Enter");
   assert.ok((await other_than(null, "the area at the contour")) > 0);
   assert.equal(await page.locator("strata-stage svg.over circle").count(), 0);
+  await page.keyboard.press("Escape");
+  await selection().waitFor({ state: "detached" });
+});
+
+test("a lasso that snaps to edges moves to the contour of the pot", async () => {
+  await page.keyboard.press("l");
+  await page.keyboard.press("Shift+A");
+  const left = await left_contour();
+  const box = await browser.stage_box();
+  const outside = left - 8 / box.width;
+  await browser.drag([
+    [outside, 0.42],
+    [outside, 0.58],
+    [left + 0.1, 0.58],
+    [left + 0.1, 0.42],
+  ]);
+  const outline = page.locator("strata-stage svg.over polygon").first();
+  const points = (await outline.getAttribute("points"))
+    .split(" ")
+    .map((point) => point.split(",").map(Number));
+  await shot("fitted");
+  const near = points.filter(
+    ([x, y]) => x < left * box.width + 30 && Math.abs(y / box.height - 0.5) < 0.03,
+  );
+  assert.ok(near.length > 0, "no point is near the contour");
+  for (const [x, y] of near)
+    assert.ok(Math.abs(x - left * box.width) < 3, `${x}, ${y} is off ${left * box.width}`);
+  assert.ok((await other_than(null, "the area of the lasso")) > 0);
+  await page.keyboard.press("Shift+A");
   await page.keyboard.press("Escape");
   await selection().waitFor({ state: "detached" });
 });

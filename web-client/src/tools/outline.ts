@@ -34,6 +34,8 @@ export interface EdgeSnapping {
   placeAt(at: Point, from: Point | null): Point;
   /** Returns the points of the edge between two points. Returns none for a straight segment. */
   between(from: Point, to: Point): Point[];
+  /** Returns an outline on edges near a closed outline that was drawn freely. */
+  around(outline: readonly Point[]): Point[];
 }
 
 /** Finished outlines whose corners can be moved. */
@@ -114,7 +116,12 @@ export abstract class OutlineTool {
   protected finish(): void {
     const { points: path, setsCorners } = this;
     this.giveUp();
-    if (path.length >= this._least) this.host.finishOutline(path, setsCorners);
+    if (path.length >= this._least) this.host.finishOutline(this.fitted(path), setsCorners);
+  }
+
+  /** Returns the outline to use for a drawn one. */
+  protected fitted(drawn: Point[]): Point[] {
+    return drawn;
   }
 
   protected get setsCorners(): boolean {
@@ -156,6 +163,11 @@ export class LassoTool extends OutlineTool implements Tool {
     if (key !== "Escape") return false;
     this.giveUp();
     return true;
+  }
+
+  protected override fitted(drawn: Point[]): Point[] {
+    const around = this.host.edges?.()?.around(drawn) ?? drawn;
+    return around.length <= this.most ? around : drawn;
   }
 }
 

@@ -39,7 +39,7 @@ export const kRailTools: readonly Exclude<ToolName, "face" | "part">[] = [
 /** Tools that add marks to a record of the layer's table. */
 export const kMarkingTools: readonly ToolName[] = ["line", "point"];
 /** Tools that can follow edges in the picture. */
-export const kSnappingTools: readonly ToolName[] = ["polygon", "line"];
+export const kSnappingTools: readonly ToolName[] = ["polygon", "lasso", "line"];
 /** Tools that select a part of the surface. */
 export const kSelectingTools: readonly ToolName[] = ["polygon", "lasso", "wand"];
 /** Tools that keep the selection: tools that select, and tools that only look at the model. */

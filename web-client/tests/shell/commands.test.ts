@@ -141,7 +141,7 @@ describe("A key", () => {
     expect(panels).toEqual(["layers"]);
   });
 
-  it("snaps the polygon or the line to edges, and chooses the polygon for it", () => {
+  it("snaps the polygon, the lasso or the line to edges, and chooses the polygon for it", () => {
     const { brush } = session.painting;
     const snap = (): boolean => press("A", { shiftKey: true });
     expect(snap()).toBe(true);
@@ -151,6 +151,9 @@ describe("A key", () => {
     press("d");
     snap();
     expect([session.tools.active, brush.snaps]).toEqual(["line", true]);
+    session.tools.choose("lasso");
+    snap();
+    expect([session.tools.active, brush.snaps]).toEqual(["lasso", false]);
     press("v");
     snap();
     expect([session.tools.active, brush.snaps]).toEqual(["polygon", true]);

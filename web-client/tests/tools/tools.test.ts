@@ -496,6 +496,7 @@ describe("outlines that follow edges", () => {
     edges = {
       placeAt: ([x, y]) => [10 * Math.round(x / 10), 10 * Math.round(y / 10)],
       between: ([, y], [x]) => [[x, y]],
+      around: (outline) => outline.map(([x, y]) => [x + 1, y + 1]),
     };
     following = {
       beginOutline: () => true,
@@ -609,18 +610,42 @@ describe("outlines that follow edges", () => {
 
   it("an edge with too many points becomes a straight segment", () => {
     const long = Array.from({ length: kMostPoints - 1 }, (_, at): Place => [at, 7]);
-    edges = { placeAt: (at) => at, between: () => long };
+    edges = { placeAt: (at) => at, between: () => long, around: (outline) => [...outline] };
     const polygon = new PolygonTool(following);
     press(polygon, [10, 10], [50, 30], [20, 80]);
     expect(polygon.outline?.points.length).toBe(3);
     polygon.key("Enter");
     expect(finished[0]?.path.length).toBe(3);
-    edges = { placeAt: (at) => at, between: () => long.slice(2) };
+    edges.between = () => long.slice(2);
     press(polygon, [10, 10], [50, 30], [20, 80]);
     expect(polygon.outline?.points.length).toBe(kMostPoints);
     press(polygon, [99, 99]);
     polygon.key("Enter");
     expect(finished[1]?.path.length).toBe(kMostPoints);
+  });
+
+  it("a lasso is moved to edges when it ends, unless it then has too many points", () => {
+    const drawn: Place[] = [
+      [0, 0],
+      [50, 0],
+      [50, 50],
+    ];
+    const lasso = new LassoTool(following);
+    const draw = (): void => {
+      lasso.down({ x: 0, y: 0 });
+      lasso.move(drawn.slice(1).map(([x, y]) => ({ x, y })));
+      lasso.up();
+    };
+    draw();
+    edges!.around = () => Array.from({ length: kMostPoints + 1 }, (): Place => [1, 1]);
+    draw();
+    edges = null;
+    draw();
+    expect(finished).toEqual([
+      { path: drawn.map(([x, y]) => [x + 1, y + 1]), corners: false },
+      { path: drawn, corners: false },
+      { path: drawn, corners: false },
+    ]);
   });
 
   it("a line follows edges between its places, and Backspace removes drawn points one by one", () => {

@@ -122,7 +122,7 @@ export class StrataBrushPanel extends LitElement {
     const words = texts.areas;
     return html`<h2>${texts.tools[tool]}</h2>
       <p class="hint">${words.how[tool]}</p>
-      ${tool === "polygon" ? this.snaps() : nothing}
+      ${tool === "bucket" ? nothing : this.snaps()}
       ${tool === "bucket" || !session.selection ? nothing : html`<strata-selection-panel .session=${session}></strata-selection-panel>`}
       ${radioGroup<boolean>({
         label: words.does,

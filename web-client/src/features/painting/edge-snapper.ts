@@ -1,12 +1,13 @@
-// Follows edges in the shown frame, for polygons and lines. A part of the frame around the last
-// point is enough. Its costs, and the paths from the last point to all of its pixels, are computed
-// once per point, so a moved pointer only needs to look up its path.
+// Follows edges in the shown frame, for polygons and lines, and moves lassos to them. For a point, a
+// part of the frame around it is enough. The costs of this part, and the paths from the point to all
+// of its pixels, are computed once per point, so a moved pointer only needs to look up its path.
 
 import { simplifyLine } from "../../domain/marks";
 import { edgeCosts, kMaxCost } from "../../math/edge-costs";
 import { costOfStraight, LeastCostPaths } from "../../math/least-cost-paths";
 import type { Point } from "../../net/stroke";
 import type { EdgeSnapping } from "../../tools/outline";
+import { fittedOutline, kFitReach } from "./outline-fitter";
 
 /** A frame in full quality that shows the current camera. */
 export interface SharpFrame {
@@ -94,6 +95,16 @@ export class EdgeSnapper implements EdgeSnapping {
       this._edge = { paths, to: end, points };
     }
     return this._edge.points;
+  }
+
+  around(outline: readonly Point[]): Point[] {
+    const frame = this._host.frame();
+    if (!frame) return [...outline];
+    const view = this._host.window();
+    const [across, down] = [frame.width / view.width, frame.height / view.height];
+    const inFrame = outline.map(([x, y]): Point => [x * across, y * down]);
+    const reach = kFitReach * this._host.scale() * across;
+    return fittedOutline(frame, inFrame, reach).map(([x, y]) => [x / across, y / down]);
   }
 
   /** Returns the points of a path, without its ends. */

@@ -133,6 +133,29 @@ describe("An edge between two points", () => {
   });
 });
 
+describe("An outline drawn around a shape", () => {
+  const around = (radius: number): Point[] =>
+    Array.from({ length: 60 }, (_, at): Point => {
+      const angle = (at / 60) * 2 * Math.PI;
+      return [kMiddle + radius * Math.cos(angle), kMiddle + radius * Math.sin(angle)];
+    });
+
+  it("moves to its border, also if a pixel of the frame is several pixels of the window", () => {
+    for (const size of [1, 2]) {
+      scale = size;
+      view = { width: 160 * size, height: 160 * size };
+      const drawn = around(kRadius + 7).map(([x, y]): Point => [x * size, y * size]);
+      for (const [x, y] of snapper.around(drawn))
+        expect(off([x / size, y / size])).toBeLessThanOrEqual(1.5);
+    }
+  });
+
+  it("stays where it is while no frame shows the current camera", () => {
+    frame = null;
+    expect(snapper.around(around(57))).toEqual(around(57));
+  });
+});
+
 describe("The read part of the frame", () => {
   it("is never larger than its limit, moves with the pointer, and keeps the last point", () => {
     frame = {
