@@ -596,6 +596,7 @@ export const laterTexts = {
       observed_painted: (share) =>
         `Wo mindestens eine Ebene bemalt ist, stimmen sie auf ${share} überein.`,
       unpainted_counts: "„Nicht bemalt“ zählt als Klasse.",
+      none: "Die Ebenen haben verschiedene Klassen, daher ist ihre Übereinstimmung unbekannt. Zwei Personen haben dieselben Klassen verwendet, wenn gleiche Zahlen in den Farben beider Ebenen gleich heißen.",
       class: "Klasse",
       unpainted: "Nicht bemalt",
       both: "In beiden",

@@ -590,6 +590,7 @@ export const laterTexts = {
       observed_painted: (share: string) =>
         `Where at least one layer is painted, they agree on ${share}.`,
       unpainted_counts: "“Not painted” counts as a class.",
+      none: "The layers have different classes, so their agreement is unknown. Two observers used the same classes if equal numbers have equal names in the colors of both layers.",
       class: "Class",
       unpainted: "Not painted",
       both: "In both",

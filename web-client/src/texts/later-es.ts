@@ -591,6 +591,7 @@ export const laterTexts = {
       observed_painted: (share) =>
         `Donde al menos una capa está pintada, coinciden en el ${share}.`,
       unpainted_counts: "«Sin pintar» cuenta como una clase.",
+      none: "Las capas tienen clases distintas, por lo que se desconoce su concordancia. Dos personas usaron las mismas clases si los números iguales tienen el mismo nombre en los colores de ambas capas.",
       class: "Clase",
       unpainted: "Sin pintar",
       both: "En ambas",

@@ -38,13 +38,19 @@ async function copy(rows: readonly (readonly string[])[], holder: HTMLElement): 
   );
 }
 
-export function workbookButtons(of: {
+interface CopiedTable {
   what: string;
   rows: () => readonly (readonly string[])[];
-  save: (f: WorkbookQuery["f"]) => void;
-}): TemplateResult {
+}
+
+export const copyButton = ({ what, rows }: CopiedTable): TemplateResult =>
+  html`<button type="button" aria-label="${texts.statistics.copy}: ${what}" @click=${(event: Event) => void copy(rows(), event.currentTarget as HTMLElement)}>${icon("copy")}${texts.statistics.copy}</button>`;
+
+export function workbookButtons(
+  of: CopiedTable & { save: (f: WorkbookQuery["f"]) => void },
+): TemplateResult {
   const words = texts.statistics;
   const files: WorkbookQuery["f"][] = ["csv", "xlsx"];
-  return html`<button type="button" aria-label="${words.copy}: ${of.what}" @click=${(event: Event) => void copy(of.rows(), event.currentTarget as HTMLElement)}>${icon("copy")}${words.copy}</button>
+  return html`${copyButton(of)}
     ${files.map((f) => html`<button type="button" aria-label="${f.toUpperCase()}: ${of.what}" title=${words.save[f]} @click=${() => of.save(f)}>${icon("import")}${f.toUpperCase()}</button>`)}`;
 }

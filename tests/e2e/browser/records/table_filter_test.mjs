@@ -337,6 +337,7 @@ test("two layers are set against each other, with names and sums", async () => {
     columns: "units",
   });
   assert.equal(await table.getByRole("rowheader").count(), expected.rows.length + 1);
+  await areas.getByText(words.cross_table.agreement.none).waitFor();
   assert.deepEqual(await findings(page), []);
   await shot("cross-table");
   const crossed = await saved(() =>
@@ -381,6 +382,9 @@ test("two observers who used the same classes see how well they agree", async ()
   const names = await agreement.getByRole("rowheader").allInnerTexts();
   assert.equal(names.length, expected.classes.length);
   assert.equal(names.at(-1), words.cross_table.agreement.unpainted);
+  await areas.getByRole("button", { name: "Copy: Agreement of the two layers" }).click();
+  const copied = await page.evaluate(() => navigator.clipboard.readText());
+  assert.match(copied, /^Class\tIoU\tF1\t/);
   assert.deepEqual(await findings(page), []);
   await shot("agreement");
 });

@@ -12,7 +12,7 @@ import { describeValue } from "../../session/layer-values";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { saveBlob } from "../../ui/save-from";
-import { workbookButtons, workbookQuery } from "../../ui/workbook-buttons";
+import { copyButton, workbookButtons, workbookQuery } from "../../ui/workbook-buttons";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import { agreementSummary, kMostClasses } from "./agreement-summary";
@@ -176,15 +176,16 @@ export class StrataCrossTable extends LitElement {
       </div>
       ${this.grid(what, head!, lines, true)}
       ${all.length > kMostShown || all[0]!.length > kMostShown ? html`<p class="hint">${words.cut(kMostShown)}</p>` : nothing}
-      ${table.agreement ? this.agreement(other, table.agreement) : nothing}`;
+      <h4>${words.agreement.title}</h4>
+      ${table.agreement ? this.agreement(other, table.agreement) : html`<p class="hint">${words.agreement.none}</p>`}`;
   }
 
   private agreement(other: Layer, agreement: Agreement): TemplateResult {
     const { title, cut } = words.agreement;
     const { tables } = this.session;
     const { sentences, rows, isCut } = agreementSummary(agreement, this.layer, other, tables);
-    return html`<h4>${title}</h4>
-      ${sentences.map((sentence) => html`<p>${sentence}</p>`)}
+    return html`${sentences.map((sentence) => html`<p>${sentence}</p>`)}
+      <div class="row" role="group" aria-label=${title}>${copyButton({ what: title, rows: () => rows })}</div>
       ${this.grid(title, rows[0]!, rows.slice(1), false)}
       ${isCut ? html`<p class="hint">${cut(kMostClasses)}</p>` : nothing}`;
   }
