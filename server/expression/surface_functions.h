@@ -26,7 +26,8 @@ inline constexpr std::array kSurfaceFunctions{
     NamedSurfaceFunction{Expression::Op::focal_mean, "focal_mean", true},
     NamedSurfaceFunction{Expression::Op::focal_min, "focal_min", true},
     NamedSurfaceFunction{Expression::Op::focal_max, "focal_max", true},
-    NamedSurfaceFunction{Expression::Op::focal_variety, "focal_variety", true}};
+    NamedSurfaceFunction{Expression::Op::focal_variety, "focal_variety", true},
+    NamedSurfaceFunction{Expression::Op::hot_spot, "hot_spot", true}};
 
 // The slugs of the layers that take the place of functions begin with this text.
 inline constexpr std::string_view kSurfaceFunctionPrefix = "surface.function.";

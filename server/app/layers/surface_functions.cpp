@@ -93,6 +93,7 @@ class SurfaceFunctionValues {
       case Op::focal_min: return query::Focal::min;
       case Op::focal_max: return query::Focal::max;
       case Op::focal_variety: return query::Focal::variety;
+      case Op::hot_spot: return query::Focal::hot_spot;
       default: return query::Focal::mean;
     }
   }

@@ -39,6 +39,14 @@ struct MeanPart {
     return static_cast<float>(weighted / area);
   }
 };
+struct AreaPart {
+  double area = 0;
+  void add(float, float of_area) { area += double{of_area}; }
+  void add(const AreaPart& other) { area += other.area; }
+  std::optional<float> result() const {
+    return area > 0 ? std::optional(static_cast<float>(area)) : std::nullopt;
+  }
+};
 struct MinPart {
   float least = kInfinity;
   void add(float value, float) { least = std::min(least, value); }
@@ -155,14 +163,15 @@ class PartDiscs {
         discs_(input.map, graph, radius),
         disc_area_(disc_area(input.map, radius)) {}
 
-  std::optional<float> at(std::uint32_t texel) {
+  Part part_at(std::uint32_t texel) {
     Part part;
     add_disc(
         input_, discs_, disc_area_, texel,
         [&](int y, int x0, int x1) { parts_.add_chord(y, x0, x1, part); },
         [&](std::uint32_t other) { parts_.add_texel(other, part); }, [&] { part = {}; });
-    return part.result();
+    return part;
   }
+  std::optional<float> at(std::uint32_t texel) { return part_at(texel).result(); }
 
  private:
   const Input& input_;
@@ -198,11 +207,16 @@ class VarietyDiscs {
   ValueAreas found_;
 };
 
+// The part of the reported progress that one pass over all texels has.
+struct Share {
+  double from = 0, to = 1;
+};
+
 // Computes `make_discs().at(texel)` for each surface texel, with one object for each part of the
 // work.
 template <class MakeDiscs>
 Result<SurfaceValues> compute_discs(const Input& input, Progress& progress, int threads,
-                                    MakeDiscs make_discs) {
+                                    MakeDiscs make_discs, Share share = {}) {
   constexpr std::size_t kSlotsAtOnce = 256;
   const std::size_t slots = input.map.block_of_slot.size();
   SurfaceValues result{std::vector<std::uint32_t>(slots * 64), std::vector<std::uint64_t>(slots)};
@@ -220,7 +234,8 @@ Result<SurfaceValues> compute_discs(const Input& input, Progress& progress, int 
           result.set(texel, {std::bit_cast<std::uint32_t>(*value), true});
       }
     }
-    progress.report(double(++done) / double(parts), "Comparing neighborhoods");
+    progress.report(share.from + (share.to - share.from) * double(++done) / double(parts),
+                    "Comparing neighborhoods");
   });
   if (progress.cancelled()) return cancelled_problem();
   return result;
@@ -228,10 +243,78 @@ Result<SurfaceValues> compute_discs(const Input& input, Progress& progress, int 
 
 template <class Part>
 Result<SurfaceValues> part_values(const Input& input, double radius, const mesh::TexelGraph& graph,
-                                  Progress& progress, int threads) {
+                                  Progress& progress, int threads, Share share = {}) {
   const RowParts<Part> parts(input, threads);
+  return compute_discs(
+      input, progress, threads, [&] { return PartDiscs<Part>(input, parts, graph, radius); },
+      share);
+}
+
+// The values of places with a size, from which the score of a hot spot follows.
+struct Places {
+  double mean = 0, deviation = 0;
+  double number = 0;  // of places with a value
+  double area = 0;    // of one place
+};
+
+class HotSpotDiscs {
+ public:
+  HotSpotDiscs(const Input& input, const RowParts<MeanPart>& parts, const mesh::TexelGraph& graph,
+               double radius, const Places& places)
+      : discs_(input, parts, graph, radius), places_(places) {}
+
+  std::optional<float> at(std::uint32_t texel) {
+    const MeanPart part = discs_.part_at(texel);
+    if (!(part.area > 0)) return std::nullopt;
+    const double within = part.area / places_.area;
+    const double variance = places_.deviation * places_.deviation * (places_.number - within) /
+                            (within * (places_.number - 1));
+    // Without a deviation, or if all places are within the radius, no place stands out.
+    if (!(variance > 0)) return 0.0f;
+    return static_cast<float>((part.weighted / part.area - places_.mean) / std::sqrt(variance));
+  }
+
+ private:
+  PartDiscs<MeanPart> discs_;
+  const Places& places_;
+};
+
+Result<Places> measure_places(const Input& input, double radius, const mesh::TexelGraph& graph,
+                              Progress& progress, int threads) {
+  const auto means =
+      STRATA_TRY(part_values<MeanPart>(input, radius, graph, progress, threads, {0, 0.15}));
+  const auto areas =
+      STRATA_TRY(part_values<AreaPart>(input, radius, graph, progress, threads, {0.15, 0.3}));
+  double area = 0, weighted = 0, squares = 0, place_areas = 0;
+  const auto for_each_place = [&](auto visit) {
+    for (std::uint32_t texel = 0; texel < means.bits.size(); ++texel)
+      if (input.has_value(texel))
+        visit(double{input.map.area[texel]}, double{std::bit_cast<float>(means.bits[texel])},
+              double{std::bit_cast<float>(areas.bits[texel])});
+  };
+  for_each_place([&](double of_texel, double mean, double of_place) {
+    area += of_texel;
+    weighted += of_texel * mean;
+    place_areas += of_texel * of_place;
+  });
+  if (!(area > 0)) return Places{};
+  const double mean = weighted / area;
+  for_each_place([&](double of_texel, double value, double) {
+    squares += of_texel * (value - mean) * (value - mean);
+  });
+  const double of_place = place_areas / area;
+  return Places{mean, std::sqrt(squares / area), area / of_place, of_place};
+}
+
+Result<SurfaceValues> hot_spot_values(const Input& input, double radius,
+                                      const mesh::TexelGraph& graph, Progress& progress,
+                                      int threads) {
+  constexpr double kPlaceRadius = 0.25;  // of the radius
+  const Places places =
+      STRATA_TRY(measure_places(input, kPlaceRadius * radius, graph, progress, threads));
+  const RowParts<MeanPart> parts(input, threads);
   return compute_discs(input, progress, threads,
-                       [&] { return PartDiscs<Part>(input, parts, graph, radius); });
+                       [&] { return HotSpotDiscs(input, parts, graph, radius, places); }, {0.3, 1});
 }
 
 std::vector<float> decoded(const SurfaceValues& values, ValueType type) {
@@ -271,6 +354,7 @@ Result<SurfaceValues> focal_values(Focal statistic, const SurfaceValues& values,
     case Focal::mean: return part_values<MeanPart>(input, radius, graph, progress, threads);
     case Focal::min: return part_values<MinPart>(input, radius, graph, progress, threads);
     case Focal::max: return part_values<MaxPart>(input, radius, graph, progress, threads);
+    case Focal::hot_spot: return hot_spot_values(input, radius, graph, progress, threads);
     case Focal::variety: break;
   }
   return compute_discs(input, progress, threads,

@@ -21,6 +21,13 @@ enum class Focal {
   min,      //
   max,      //
   variety,  // the number of distinct values
+  // The z-score of a hot spot (positive) or cold spot (negative): Gi* of Getis and Ord (1992; Ord
+  // and Getis 1995), with equal weights within the radius. Their formula counts places, so its
+  // scores grow with the number of texels. Here the places are discs with a quarter of the radius:
+  // their mean area and the spread of their means stand for the size and the variance of a place.
+  // The score is then the same at each resolution. If values are independent over more than such a
+  // disc, the score has about a standard normal distribution.
+  hot_spot,
 };
 
 // The largest radius of `focal_values`, in model units: kMaxDiscTexels texels of the mean size.
@@ -34,6 +41,9 @@ double max_focal_radius(const mesh::SurfaceMap& map);
 // The neighborhood is that of query/regions/texel_discs. Near a seam or an edge, distances are
 // straight through space, and at folds and thin walls, where that reaches too much surface, along
 // paths. On curved surfaces within a chart, it is exact to first order.
+//
+// Hot spots also need the values of all other places: where they are equal, or all within the
+// radius, the score is 0.
 //
 // Sums of 8 texels make the time per texel proportional to the radius. It grows with the square of
 // the radius near seams, and for the variety of layers with many values. Needs about 24 bytes of

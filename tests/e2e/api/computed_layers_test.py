@@ -312,6 +312,9 @@ def test_neighborhoods(server):
     compute_along(server, "Variety", "focal_variety(bands, 1.5)", type="u8")
     assert value(server, "variety", 51, 50)["value"] == 2
     assert value(server, "variety", 60, 50)["value"] == 1
+    compute_along(server, "Spots", "hot_spot(bands, 1.5)")
+    low, high = value(server, "spots", 20, 50)["value"], value(server, "spots", 80, 40)["value"]
+    assert low < -0.5 and high > 0.5, (low, high)
     job = compute(server, "Wide", "focal_mean(bands, 50)", expect=202)
     done = server.wait_for_job(job["id"])
     assert done["state"] == "failed" and "40 texels" in done["problem"]["detail"], done

@@ -45,7 +45,8 @@ TEST(SurfaceFunctions, have_a_condition_or_a_number_and_a_limit) {
 TEST(SurfaceFunctions, of_neighborhoods_have_a_number_and_a_radius) {
   for (const auto& [name, op] :
        {std::pair("focal_mean", Op::focal_mean), std::pair("focal_min", Op::focal_min),
-        std::pair("focal_max", Op::focal_max), std::pair("focal_variety", Op::focal_variety)}) {
+        std::pair("focal_max", Op::focal_max), std::pair("focal_variety", Op::focal_variety),
+        std::pair("hot_spot", Op::hot_spot)}) {
     const Expression focal = number(std::string(name) + "(wet - dry, 5)");
     EXPECT_EQ(focal.op, op);
     EXPECT_EQ(focal.number, 5);

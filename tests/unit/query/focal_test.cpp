@@ -75,6 +75,7 @@ std::optional<float> by_brute_force(Focal statistic, const Grid& grid, glm::ivec
     case Focal::min: return *std::ranges::min_element(found);
     case Focal::max: return *std::ranges::max_element(found);
     case Focal::variety: break;
+    case Focal::hot_spot: ADD_FAILURE() << "has a test of its own"; break;
   }
   return static_cast<float>(std::set(found.begin(), found.end()).size());
 }
@@ -194,6 +195,192 @@ TEST(Focal, weighs_the_mean_by_area) {
   });
 }
 
+// The formula of Getis and Ord, with discs as places.
+std::vector<std::vector<float>> scores_by_brute_force(const Grid& grid, int radius) {
+  const auto disc = [&](int x, int y, double reach) {
+    double area = 0, weighted = 0;
+    for (int v = std::max(0, y - int(reach)); v <= std::min(kSheetHeight - 1, y + int(reach)); ++v)
+      for (int u = std::max(0, x - int(reach)); u <= std::min(kSheetWidth - 1, x + int(reach)); ++u)
+        if (const auto& value = grid[std::size_t(v)][std::size_t(u)];
+            value && std::hypot(u - x, v - y) <= reach) {
+          area += 1;
+          weighted += double{*value};
+        }
+    return std::pair(area, weighted / area);
+  };
+  double area = 0, sum = 0, squares = 0, of_places = 0;
+  for (int y = 0; y < kSheetHeight; ++y)
+    for (int x = 0; x < kSheetWidth; ++x) {
+      if (!grid[std::size_t(y)][std::size_t(x)]) continue;
+      const auto [of_place, mean] = disc(x, y, radius / 4.0);
+      area += 1;
+      sum += mean;
+      squares += mean * mean;
+      of_places += of_place;
+    }
+  const double mean = sum / area, deviation = std::sqrt(squares / area - mean * mean),
+               of_place = of_places / area, number = area / of_place;
+  std::vector<std::vector<float>> scores(kSheetHeight, std::vector<float>(kSheetWidth));
+  for (int y = 0; y < kSheetHeight; ++y)
+    for (int x = 0; x < kSheetWidth; ++x) {
+      const auto [within_area, within_mean] = disc(x, y, radius);
+      const double within = within_area / of_place;
+      scores[std::size_t(y)][std::size_t(x)] = static_cast<float>(
+          (within * (within_mean - mean)) /
+          (deviation * std::sqrt((number * within - within * within) / (number - 1))));
+    }
+  return scores;
+}
+
+TEST(HotSpots, equal_the_formula_of_getis_and_ord_with_and_without_seams) {
+  Grid grid = noisy_grid();
+  grid[40][20] = 5;
+  const auto right = scores_by_brute_force(grid, 12);
+  for (const SheetCuts& cuts : {SheetCuts{}, SheetCuts{{96}, {64}}}) {
+    const Surface sheet = test::cut_sheet(cuts);
+    const auto values = put(sheet, [&](std::uint32_t texel) {
+      const glm::ivec2 at = test::sheet_place(sheet, texel);
+      return grid[std::size_t(at.y)][std::size_t(at.x)];
+    });
+    const auto scores = compute(Focal::hot_spot, sheet, values, 12);
+    ASSERT_TRUE(scores);
+    double least = 0, most = 0;
+    test::for_each_surface_texel(sheet.map, [&](std::uint32_t texel) {
+      const glm::ivec2 at = test::sheet_place(sheet, texel);
+      const auto score = number_at(*scores, texel);
+      if (!score) return;
+      least = std::min(least, double{*score});
+      most = std::max(most, double{*score});
+      ASSERT_NEAR(*score, right[std::size_t(at.y)][std::size_t(at.x)], 2e-3) << at.x << ' ' << at.y;
+    });
+    EXPECT_LT(least, -1);
+    EXPECT_GT(most, 1);
+  }
+}
+
+// A plane of one unit, with values at its texels.
+Surface plane(int resolution, const test::Cuts& cuts = {}) {
+  const test::Shape shape{64, 64, [](double s, double t) { return glm::dvec3(s, t, 0); },
+                          [](double s, double t) { return glm::dvec2(s, t); }};
+  return test::cut_surface(shape, cuts, resolution);
+}
+glm::dvec2 on_plane(const Surface& surface, std::uint32_t texel) {
+  return glm::dvec2(surface.geometry.origin +
+                    glm::dvec3(surface.map.position(texel / 64, int(texel % 64))));
+}
+
+TEST(HotSpots, find_planted_clusters_and_little_else) {
+  const Surface surface = plane(512);
+  const double radius = 0.06;
+  const glm::dvec2 hot(0.3, 0.6), cold(0.7, 0.35);
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(0, 1);
+  const auto values = put(surface, [&](std::uint32_t texel) {
+    const glm::dvec2 at = on_plane(surface, texel);
+    const float planted = glm::distance(at, hot) < radius    ? 0.5f
+                          : glm::distance(at, cold) < radius ? -0.5f
+                                                             : 0;
+    return std::optional(10 + noise(random) + planted);
+  });
+  const auto scores = compute(Focal::hot_spot, surface, values, radius);
+  ASSERT_TRUE(scores);
+  double elsewhere = 0, flagged = 0, hottest = 0, coldest = 0;
+  glm::dvec2 hottest_at{}, coldest_at{};
+  test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+    const glm::dvec2 at = on_plane(surface, texel);
+    const double score = double{*number_at(*scores, texel)};
+    if (score > hottest) hottest = score, hottest_at = at;
+    if (score < coldest) coldest = score, coldest_at = at;
+    if (glm::distance(at, hot) < 2 * radius || glm::distance(at, cold) < 2 * radius) return;
+    elsewhere += 1;
+    flagged += std::abs(score) > 2.58 ? 1 : 0;
+  });
+  EXPECT_LT(glm::distance(hottest_at, hot), radius / 2);
+  EXPECT_LT(glm::distance(coldest_at, cold), radius / 2);
+  EXPECT_GT(hottest, 4);
+  EXPECT_LT(coldest, -4);
+  EXPECT_LT(flagged / elsewhere, 0.03);  // 0.01 of independent places
+}
+
+TEST(HotSpots, of_noise_have_a_standard_normal_distribution) {
+  const Surface surface = plane(512);
+  double sum = 0, squares = 0, count = 0, flagged = 0;
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    std::mt19937 random(seed);
+    std::exponential_distribution<float> noise(1);  // skewed
+    const auto values = put(surface, [&](std::uint32_t) { return std::optional(noise(random)); });
+    const auto scores = compute(Focal::hot_spot, surface, values, 0.05);
+    ASSERT_TRUE(scores);
+    test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+      const double score = double{*number_at(*scores, texel)};
+      sum += score;
+      squares += score * score;
+      count += 1;
+      flagged += std::abs(score) > 1.96 ? 1 : 0;
+    });
+  }
+  EXPECT_NEAR(sum / count, 0, 0.1);
+  EXPECT_NEAR(std::sqrt(squares / count), 1, 0.1);
+  EXPECT_NEAR(flagged / count, 0.05, 0.02);
+}
+
+TEST(HotSpots, are_the_same_at_other_resolutions_and_with_other_charts) {
+  const auto value_at = [](glm::dvec2 at) {
+    return static_cast<float>(std::sin(17 * at.x) * std::cos(23 * at.y) + std::sin(5 * at.y));
+  };
+  std::vector<std::map<std::pair<int, int>, std::pair<double, int>>> found;
+  for (const auto& [resolution, cuts] :
+       {std::pair(256, test::Cuts{1, 1, 0, 1}), std::pair(512, test::Cuts{1, 1, 0, 1}),
+        std::pair(512, test::Cuts{3, 3})}) {
+    const Surface surface = plane(resolution, cuts);
+    const auto values = put(surface, [&](std::uint32_t texel) {
+      return std::optional(value_at(on_plane(surface, texel)));
+    });
+    const auto scores = compute(Focal::hot_spot, surface, values, 0.06);
+    ASSERT_TRUE(scores) << scores.error().detail;
+    auto& means = found.emplace_back();  // of squares on the plane
+    test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+      const glm::dvec2 at = on_plane(surface, texel);
+      auto& [sum, count] = means[{int(at.x * 20), int(at.y * 20)}];
+      sum += double{*number_at(*scores, texel)};
+      ++count;
+    });
+  }
+  double squares = 0;
+  for (const auto& [square, first] : found[0]) squares += std::pow(first.first / first.second, 2);
+  for (const std::size_t other : {std::size_t{1}, std::size_t{2}}) {
+    double off = 0;
+    for (const auto& [square, first] : found[0]) {
+      const auto& [sum, count] = found[other].at(square);
+      off += std::pow(first.first / first.second - sum / count, 2);
+    }
+    EXPECT_LT(std::sqrt(off / squares), 0.05) << other;
+  }
+}
+
+TEST(HotSpots, are_0_where_no_place_stands_out) {
+  const Surface sheet = test::cut_sheet();
+  const auto same = put(sheet, [](std::uint32_t) { return std::optional(3.0f); });
+  const auto one = put(sheet, [&](std::uint32_t texel) {
+    const glm::ivec2 at = test::sheet_place(sheet, texel);
+    return at == glm::ivec2(50, 50) ? std::optional(3.0f) : std::nullopt;
+  });
+  const auto none = put(sheet, [](std::uint32_t) { return std::nullopt; });
+  for (const auto& [values, known] :
+       {std::pair(same, kSheetWidth * kSheetHeight), std::pair(one, 317), std::pair(none, 0)}) {
+    const auto scores = compute(Focal::hot_spot, sheet, values, 10);
+    ASSERT_TRUE(scores);
+    int count = 0;
+    test::for_each_surface_texel(sheet.map, [&](std::uint32_t texel) {
+      const auto score = number_at(*scores, texel);
+      if (!score) return;
+      ++count;
+      ASSERT_EQ(*score, 0);
+    });
+    EXPECT_EQ(count, known);
+  }
+}
+
 TEST(Focal, does_not_depend_on_threads_and_can_be_cancelled) {
   const Surface sheet = test::cut_sheet({{96}, {64}});
   const Grid grid = noisy_grid();
@@ -201,7 +388,8 @@ TEST(Focal, does_not_depend_on_threads_and_can_be_cancelled) {
     const glm::ivec2 at = test::sheet_place(sheet, texel);
     return grid[std::size_t(at.y)][std::size_t(at.x)];
   });
-  for (const Focal statistic : kAll)
+  for (const Focal statistic :
+       {Focal::mean, Focal::min, Focal::max, Focal::variety, Focal::hot_spot})
     EXPECT_EQ(compute(statistic, sheet, values, 5, 1)->bits,
               compute(statistic, sheet, values, 5, 4)->bits);
   Progress progress;

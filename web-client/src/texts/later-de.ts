@@ -292,6 +292,7 @@ export const laterTexts = {
       ["focal_min(", "kleinster Wert im Umkreis: focal_min(Ebene, 20)"],
       ["focal_max(", "größter Wert im Umkreis: focal_max(Ebene, 20)"],
       ["focal_variety(", "Anzahl verschiedener Werte im Umkreis: focal_variety(Ebene, 20)"],
+      ["hot_spot(", "wie ungewöhnlich der Mittelwert im Umkreis ist: hot_spot(Ebene, 20)"],
     ],
   },
   layer_dialog: {

@@ -294,6 +294,7 @@ export const laterTexts = {
       ["focal_min(", "smallest value within a radius: focal_min(layer, 20)"],
       ["focal_max(", "largest value within a radius: focal_max(layer, 20)"],
       ["focal_variety(", "number of different values within a radius: focal_variety(layer, 20)"],
+      ["hot_spot(", "how unusual the mean within a radius is: hot_spot(layer, 20)"],
     ] as [string, string][],
   },
   layer_dialog: {

@@ -291,6 +291,7 @@ export const laterTexts = {
       ["focal_min(", "el valor menor en un radio: focal_min(capa, 20)"],
       ["focal_max(", "el valor mayor en un radio: focal_max(capa, 20)"],
       ["focal_variety(", "cantidad de valores distintos en un radio: focal_variety(capa, 20)"],
+      ["hot_spot(", "lo inusual que es la media en un radio: hot_spot(capa, 20)"],
     ],
   },
   layer_dialog: {
