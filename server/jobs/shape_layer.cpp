@@ -12,6 +12,7 @@
 #include "mesh/analysis/model_distance.h"
 #include "mesh/analysis/openness.h"
 #include "mesh/analysis/sampled_field.h"
+#include "mesh/analysis/sun_exposure.h"
 #include "mesh/io/vertex_properties.h"
 #include "mesh/surface/boundary.h"
 #include "mesh/texels/texel_owners.h"
@@ -76,6 +77,8 @@ class Measure {
       case ShapeKind::change:
       case ShapeKind::level_of_detection:
       case ShapeKind::significant_change: return change();
+      case ShapeKind::sun_hours:
+      case ShapeKind::sun_energy: return sun();
       case ShapeKind::vertex_property: return property();
     }
     return fail(ErrorCode::internal, "Unknown kind",
@@ -174,6 +177,28 @@ class Measure {
     progress_.begin_stage(kPrepared, kMeasured);
     return sampled(even_spacing(5e5),
                    [&](const glm::vec3& p, const glm::vec3& n) { return (rays)->at(p, n); });
+  }
+
+  Result<SurfaceValue> sun() {
+    progress_.begin_stage(0, kPrepared);
+    const auto [first, days] = days_of(recipe_);
+    auto sectors = mesh::sun_sectors(*recipe_.latitude_deg, {first, days});
+    const UpFrame frame = up_frame(model_.up);
+    const double turned = glm::radians(*recipe_.north_deg);
+    const glm::dvec3 north = std::cos(turned) * frame.into + std::sin(turned) * frame.right,
+                     east = std::cos(turned) * frame.right - std::sin(turned) * frame.into;
+    for (mesh::SunSector& sector : sectors) {
+      const glm::dvec3 way = sector.direction;
+      sector.direction = way.x * east + way.y * north + way.z * frame.up;
+    }
+    const auto light =
+        STRATA_TRY(mesh::SunExposure::make(geometry_, std::move(sectors), progress_));
+    progress_.begin_stage(kPrepared, kMeasured);
+    const bool is_energy = recipe_.kind == ShapeKind::sun_energy;
+    return sampled(even_spacing(5e5), [&](const glm::vec3& p, const glm::vec3& n) {
+      const auto sum = light->at(p, n);
+      return static_cast<float>(is_energy ? sum.energy : sum.hours);
+    });
   }
 
   Result<SurfaceValue> to_boundary() {

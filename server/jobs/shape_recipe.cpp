@@ -2,14 +2,16 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/text/number_text.h"
+#include "domain/scene/compass.h"
 #include "mesh/analysis/surface_samples.h"
 
 namespace strata::jobs {
 namespace {
 
-constexpr std::array<std::string_view, 15> kNames{"height",
+constexpr std::array<std::string_view, 17> kNames{"height",
                                                   "slope",
                                                   "azimuth",
                                                   "mean_curvature",
@@ -23,6 +25,8 @@ constexpr std::array<std::string_view, 15> kNames{"height",
                                                   "change",
                                                   "level_of_detection",
                                                   "significant_change",
+                                                  "sun_hours",
+                                                  "sun_energy",
                                                   "vertex_property"};
 
 constexpr double kEdgesPerRadius = 4;
@@ -80,6 +84,10 @@ Result<void> check_members(const ShapeRecipe& r) {
                  {r.normal_scale_mm.has_value(), is_change(kind), "normal_scale_mm"},
                  {r.projection_scale_mm.has_value(), is_change(kind), "projection_scale_mm"},
                  {r.registration_mm.has_value(), is_change(kind), "registration_mm"},
+                 {r.latitude_deg.has_value(), is_sun(kind), "latitude_deg"},
+                 {r.north_deg.has_value(), is_sun(kind), "north_deg"},
+                 {!r.from.empty(), is_sun(kind), "from"},
+                 {!r.to.empty(), is_sun(kind), "to"},
                  {r.rays.has_value(), kind == ShapeKind::ambient_occlusion, "rays"},
                  {r.absolute, kind == ShapeKind::height, "absolute"},
                  {!r.model.empty(), takes_model(kind), "model"},
@@ -95,6 +103,51 @@ Result<void> check_members(const ShapeRecipe& r) {
     return fail(ErrorCode::invalid, "Property missing",
                 "Enter a property of the vertices of the scan, such as quality.",
                 "compute.property");
+  return {};
+}
+
+// Returns the day of a text in the format MM-DD; 0 is 1 January.
+std::optional<int> day_of_year(const std::string& text) {
+  constexpr std::array kDays{31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (text.size() != 5 || text[2] != '-' || !is_digit(text[0]) || !is_digit(text[1]) ||
+      !is_digit(text[3]) || !is_digit(text[4]))
+    return std::nullopt;
+  const int month = (text[0] - '0') * 10 + text[1] - '0',
+            day = (text[3] - '0') * 10 + text[4] - '0';
+  if (month < 1 || month > 12 || day < 1 || day > kDays[static_cast<std::size_t>(month - 1)])
+    return std::nullopt;
+  int before = 0;
+  for (int i = 1; i < month; ++i) before += kDays[static_cast<std::size_t>(i - 1)];
+  return before + day - 1;
+}
+
+Result<void> complete_sun(ShapeRecipe& recipe, const Model& model) {
+  if (!recipe.latitude_deg)
+    return fail(ErrorCode::invalid, "Latitude missing",
+                "Enter the latitude of the site in degrees, positive in the north.",
+                "compute.latitude_deg");
+  if (!(std::abs(*recipe.latitude_deg) <= 90))
+    return fail(ErrorCode::invalid, "Out of range", "The latitude must be from -90 to 90 degrees.",
+                "compute.latitude_deg");
+  if (const Compass compass(model); !recipe.north_deg && compass.is_known)
+    recipe.north_deg = compass.turned_degrees;
+  if (!recipe.north_deg)
+    return fail(ErrorCode::invalid, "North unknown",
+                "The direction of north is not known for this model. Enter the angle from the "
+                "direction of the front view to north, clockwise as seen from above.",
+                "compute.north_deg");
+  if (!(std::abs(*recipe.north_deg) <= 360))
+    return fail(ErrorCode::invalid, "Out of range",
+                "The direction of north must be from -360 to 360 degrees.", "compute.north_deg");
+  if (recipe.from.empty()) recipe.from = "01-01";
+  if (recipe.to.empty()) recipe.to = "12-31";
+  for (const auto& [day, member] : {std::pair(&recipe.from, "from"), std::pair(&recipe.to, "to")})
+    if (!day_of_year(*day))
+      return fail(ErrorCode::invalid, "No day of the year",
+                  "Enter a month and a day in the format MM-DD, such as 06-21. 29 February is not "
+                  "possible, because the year has 365 days.",
+                  "compute." + std::string(member));
   return {};
 }
 
@@ -176,6 +229,15 @@ Palette significance() {
   return palette;
 }
 
+Palette sunshine(double most) {
+  return linear(0, most,
+                {{28, 38, 74, 255},
+                 {112, 58, 110, 255},
+                 {200, 84, 84, 255},
+                 {245, 160, 70, 255},
+                 {255, 240, 170, 255}});
+}
+
 Palette compass() {
   Palette palette{PaletteMode::linear, 0, 360, {}, {}};
   palette.points = {{0, {44, 90, 160, 255}, "north"},
@@ -193,6 +255,13 @@ std::string scales_of(const ShapeRecipe& r) {
   return " M3C2 with a normal scale of " + mm(r.normal_scale_mm) + ", a projection scale of " +
          mm(r.projection_scale_mm) + " and a registration error of " + mm(r.registration_mm) +
          ". Searched up to " + mm(r.distance_mm) + ".";
+}
+
+std::string period_of(const ShapeRecipe& r) {
+  return " from " + r.from + " to " + r.to + " at a latitude of " +
+         short_number(r.latitude_deg.value_or(0)) + "°, with north at " +
+         short_number(r.north_deg.value_or(0)) +
+         "°. With the shadows of the model itself. Without clouds, diffuse light and other objects.";
 }
 
 std::string sentence(const ShapeRecipe& r, const Model& model, const std::string& other) {
@@ -240,6 +309,8 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
       return "Where the change since " + other +
              " is larger than noise and alignment can explain, with a confidence of 95 %: 0 no, 1 material was added, 2 material was removed." +
              scales_of(r);
+    case ShapeKind::sun_hours: return "Hours of direct sun" + period_of(r);
+    case ShapeKind::sun_energy: return "Energy of the direct sun under a clear sky" + period_of(r);
     case ShapeKind::vertex_property:
       return "Property " + r.property + " of the scan's vertices, from " + r.source + ".";
   }
@@ -260,10 +331,25 @@ bool is_change(ShapeKind kind) {
   return kind >= ShapeKind::change && kind <= ShapeKind::significant_change;
 }
 
+bool is_sun(ShapeKind kind) {
+  return kind == ShapeKind::sun_hours || kind == ShapeKind::sun_energy;
+}
+
+DaysOfYear days_of(const ShapeRecipe& recipe) {
+  constexpr int kDaysPerYear = 365;
+  const int first = day_of_year(recipe.from).value_or(0),
+            last = day_of_year(recipe.to).value_or(kDaysPerYear - 1);
+  return {first, (last - first + kDaysPerYear) % kDaysPerYear + 1};
+}
+
 Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model, const Model* other) {
   STRATA_TRY(check_members(recipe));
   if (is_change(recipe.kind)) {
     STRATA_TRY(complete_scales(recipe, model, other ? *other : model));
+    return recipe;
+  }
+  if (is_sun(recipe.kind)) {
+    STRATA_TRY(complete_sun(recipe, model));
     return recipe;
   }
   const double diagonal = diagonal_mm(model), least = least_radius_mm(model);
@@ -300,6 +386,10 @@ nlohmann::json to_json(const ShapeRecipe& r) {
   if (r.normal_scale_mm) json["normal_scale_mm"] = *r.normal_scale_mm;
   if (r.projection_scale_mm) json["projection_scale_mm"] = *r.projection_scale_mm;
   if (r.registration_mm) json["registration_mm"] = *r.registration_mm;
+  if (r.latitude_deg) json["latitude_deg"] = *r.latitude_deg;
+  if (r.north_deg) json["north_deg"] = *r.north_deg;
+  if (!r.from.empty()) json["from"] = r.from;
+  if (!r.to.empty()) json["to"] = r.to;
   if (r.rays) json["rays"] = *r.rays;
   if (r.absolute) json["absolute"] = true;
   if (!r.model.empty()) json["model"] = r.model;
@@ -319,6 +409,8 @@ std::string unit_of(const ShapeRecipe& recipe, const Model& model) {
     case ShapeKind::gaussian_curvature: return "1/" + unit + "²";
     case ShapeKind::change:
     case ShapeKind::level_of_detection: return "mm";
+    case ShapeKind::sun_hours: return "h";
+    case ShapeKind::sun_energy: return "kWh/m²";
     case ShapeKind::significant_change:
     case ShapeKind::ambient_occlusion:
     case ShapeKind::vertex_property: return "";
@@ -350,6 +442,8 @@ Palette palette_of(ShapeKind kind, const ValueRange& range) {
     case ShapeKind::significant_change: return significance();
     case ShapeKind::ambient_occlusion:
       return linear(0, 1, {{16, 18, 27, 255}, {120, 122, 130, 255}, {255, 255, 255, 255}});
+    case ShapeKind::sun_hours:
+    case ShapeKind::sun_energy: return sunshine(range.most);
     case ShapeKind::vertex_property: return viridis(range.low, range.high);
     case ShapeKind::boundary_distance: return viridis(0, rounded(range.most));
     case ShapeKind::height: break;

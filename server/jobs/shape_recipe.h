@@ -26,12 +26,16 @@ enum class ShapeKind {
   change,              // M3C2 distance to another model, in mm
   level_of_detection,  // of the change, in mm
   significant_change,  // 0: within the level of detection, 1: gain, 2: loss
+  sun_hours,           // of direct sun in a period of the year
+  sun_energy,          // of direct sun in a period of the year, in kWh/m²
   vertex_property
 };
 std::string_view name(ShapeKind kind);
 std::optional<ShapeKind> parse_shape_kind(std::string_view name);
 // Returns whether the values come from the comparison with another model with M3C2.
 bool is_change(ShapeKind kind);
+// Returns whether the values are those of the sun in a period.
+bool is_sun(ShapeKind kind);
 
 // The parameters of a layer that is computed from a model's shape. `completed` replaces empty
 // fields by defaults for the model.
@@ -45,10 +49,21 @@ struct ShapeRecipe {
   std::optional<int> rays;  // ambient occlusion: number of rays
   // Height: the world coordinate instead of the height above the lowest point.
   bool absolute = false;
-  std::string model;  // model distance, changes: id or slug of the other model
+  // Sun: degrees to the north of the equator, and degrees clockwise from the model's north axis
+  // (domain/scene/compass.h) to true north, seen from above.
+  std::optional<double> latitude_deg, north_deg;
+  std::string from, to;  // sun: the first and last day, in the format MM-DD
+  std::string model;     // model distance, changes: id or slug of the other model
   // Vertex property: its name and the source file. Empty: the only source file with this property.
   std::string property, source;
 };
+
+// The days from `from` to `to`, which may be in the next year. Both must be valid.
+struct DaysOfYear {
+  int first = 0;  // 0: 1 January, in a year of 365 days
+  int days = 365;
+};
+DaysOfYear days_of(const ShapeRecipe& recipe);
 
 // Returns the recipe with defaults for empty fields. `other` is the other model, for kinds that
 // compare two models. Returns the Error `invalid` if a field is missing, does not belong to the

@@ -17,8 +17,7 @@ namespace strata::mesh {
 // Thread-safe.
 class Openness {
  public:
-  // Fails with `out_of_memory` if the memory is too small for the ray tracer's tree, which takes
-  // about 100 bytes per triangle. Also fails when cancelled.
+  // Fails like RayScene::make.
   static Result<std::unique_ptr<Openness>> make(std::shared_ptr<const Geometry> geometry,
                                                 float distance, int rays, Progress& progress);
   virtual ~Openness() = default;

@@ -14,6 +14,10 @@ RECIPE_MEMBERS = (
     "normal_scale_mm",
     "projection_scale_mm",
     "registration_mm",
+    "latitude_deg",
+    "north_deg",
+    "from",
+    "to",
     "rays",
     "absolute",
     "model",
@@ -99,6 +103,18 @@ def test_refusals(server):
             "compute.registration_mm",
         ),
         (layer(kind="slope", registration_mm=1), 422, "compute.registration_mm"),
+        (layer(kind="sun_hours"), 422, "compute.latitude_deg"),
+        (layer(kind="sun_hours", latitude_deg=91), 422, "compute.latitude_deg"),
+        (layer(kind="sun_hours", latitude_deg=50), 422, "compute.north_deg"),
+        (layer(kind="sun_energy", latitude_deg=50, north_deg=361), 422, "compute.north_deg"),
+        (
+            layer(kind="sun_energy", latitude_deg=50, north_deg=0, **{"from": "02-29"}),
+            422,
+            "compute.from",
+        ),
+        (layer(kind="sun_energy", latitude_deg=50, north_deg=0, to="June"), 422, "compute.to"),
+        (layer(kind="slope", latitude_deg=50), 422, "compute.latitude_deg"),
+        (layer(kind="slope", to="06-01"), 422, "compute.to"),
         (layer(kind="height", sql="x"), 422, "compute.sql"),
         (layer(kind="vertex_property"), 422, "compute.property"),
         (
@@ -209,6 +225,31 @@ def test_kinds(server):
     ), statistics
     _, rim = compute(server, SHEET, "boundary_distance")
     assert rim["min"] < 0.1 and 48 < rim["max"] < 54, rim
+    # A ball in the open: half of it faces each position of the sun, and the top faces most of them.
+    sunny, statistics = compute(
+        server,
+        BALL,
+        "sun_hours",
+        latitude_deg=0,
+        north_deg=0,
+        **{"from": "03-21", "to": "03-21"},
+    )
+    assert sunny["unit"] == "h" and 5.3 < statistics["mean"] < 6.1, statistics
+    assert 11.5 < statistics["max"] <= 12.1 and statistics["min"] == 0, statistics
+    assert "03-21" in sunny["description"], sunny
+    # North can be that of the model. The sun shines from the south.
+    server.ok("PATCH", BALL, {"north": "90"})
+    east, statistics = compute(server, BALL, "sun_energy", latitude_deg=50)
+    server.ok("PATCH", BALL, {"north": ""})
+    (edit,) = server.get(f"{BALL}/layers/{east['id']}/edits").json()["edits"]
+    assert edit["recipe"]["north_deg"] == 90 and edit["recipe"]["to"] == "12-31", edit
+    assert east["unit"] == "kWh/m²" and 1200 < statistics["max"] < 2600, statistics
+    # With north to the right (x), the side that looks to the left (-x) is in the south.
+    sides = [
+        server.ok("GET", f"{BALL}/layers/{east['id']}/statistics?where={where}").json()["mean"]
+        for where in ("x%20%3C%20-45", "x%20%3E%2045")
+    ]
+    assert sides[0] > 3 * sides[1], sides
     print("kinds: ok", flush=True)
 
 

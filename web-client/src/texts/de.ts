@@ -845,6 +845,7 @@ export const texts = {
       place: "Lage und Richtung",
       distance: "Abstände",
       change: "Veränderung zwischen Aufnahmen",
+      sun: "Sonne",
       file: "Aus der Datei des Scans",
     },
     kinds: {
@@ -901,6 +902,14 @@ export const texts = {
         title: "Kleinste erkennbare Veränderung",
         lead: "In Millimetern. Eine kleinere Veränderung lässt sich nicht vom Rauschen der Scans und vom Fehler ihrer Ausrichtung unterscheiden (Nachweisgrenze, 95 %).",
       },
+      sun_hours: {
+        title: "Sonnenstunden",
+        lead: "Stunden mit direkter Sonne im Zeitraum, mit den Schatten des Modells selbst. Andere Gebäude, Bäume und Wolken sind nicht berücksichtigt.",
+      },
+      sun_energy: {
+        title: "Sonnenenergie",
+        lead: "Kilowattstunden pro Quadratmeter direkter Sonne bei klarem Himmel im Zeitraum, mit den Schatten des Modells selbst.",
+      },
       vertex_property: {
         title: "Werte aus der Datei des Scans",
         lead: "Eine Zahl, die die Scansoftware für jeden Punkt gespeichert hat: Qualität, Konfidenz, Intensität.",
@@ -924,6 +933,22 @@ export const texts = {
         hint: "das Doppelte des Mittels",
         lead: "Die Veränderung wird entlang der mittleren Normale dieses Flecks gemessen.",
       },
+    },
+    sun: {
+      latitude: {
+        label: "Geografische Breite",
+        hint: "etwa 37,9",
+        lead: "Im Süden negativ.",
+        wrong: "Geben Sie die geografische Breite ein, von -90 bis 90 Grad.",
+      },
+      north: {
+        label: "Norden",
+        hint: "der des Modells",
+        lead: "Im Uhrzeigersinn von der Blickrichtung der Vorderansicht nach Norden, von oben gesehen.",
+        wrong: "Geben Sie die Richtung nach Norden ein, von -360 bis 360 Grad.",
+      },
+      from: "Von Anfang",
+      to: "Bis Ende",
     },
     rays: "Strahlen je Punkt",
     rays_hint: "Mehr Strahlen ergeben glattere Werte und dauern länger",

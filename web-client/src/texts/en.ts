@@ -807,6 +807,7 @@ export const texts = {
       place: "Position and direction",
       distance: "Distances",
       change: "Change between surveys",
+      sun: "Sun",
       file: "From the scan's file",
     },
     kinds: {
@@ -863,6 +864,14 @@ export const texts = {
         title: "Smallest detectable change",
         lead: "In millimeters. A smaller change cannot be distinguished from the noise of the scans and the error of their alignment (level of detection, 95 %).",
       },
+      sun_hours: {
+        title: "Hours of sun",
+        lead: "Hours of direct sun in the period, with the shadows of the model itself. Other buildings, trees and clouds are not included.",
+      },
+      sun_energy: {
+        title: "Energy of the sun",
+        lead: "Kilowatt-hours per square meter of direct sun under a clear sky in the period, with the shadows of the model itself.",
+      },
       vertex_property: {
         title: "Values from the scan's file",
         lead: "A number that the scanning software stored for each point, such as quality, confidence or intensity.",
@@ -886,6 +895,22 @@ export const texts = {
         hint: "twice the average",
         lead: "The change is measured along the mean normal of this patch.",
       },
+    },
+    sun: {
+      latitude: {
+        label: "Latitude",
+        hint: "such as 37.9",
+        lead: "Negative in the south.",
+        wrong: "Enter the latitude of the site, from -90 to 90 degrees.",
+      },
+      north: {
+        label: "North",
+        hint: "that of the model",
+        lead: "Clockwise from the view of the front to north, seen from above.",
+        wrong: "Enter the direction of north, from -360 to 360 degrees.",
+      },
+      from: "From the start of",
+      to: "To the end of",
     },
     rays: "Rays per point",
     rays_hint: "More rays give smoother values and take longer",

@@ -835,6 +835,7 @@ export const texts = {
       place: "Posición y dirección",
       distance: "Distancias",
       change: "Cambio entre levantamientos",
+      sun: "Sol",
       file: "Del archivo del escaneo",
     },
     kinds: {
@@ -891,6 +892,14 @@ export const texts = {
         title: "Cambio mínimo detectable",
         lead: "En milímetros. Un cambio menor no se distingue del ruido de los escaneos ni del error de su alineación (nivel de detección, 95 %).",
       },
+      sun_hours: {
+        title: "Horas de sol",
+        lead: "Horas de sol directo en el periodo, con las sombras del propio modelo. No incluye otros edificios, árboles ni nubes.",
+      },
+      sun_energy: {
+        title: "Energía del sol",
+        lead: "Kilovatios hora por metro cuadrado de sol directo con cielo despejado en el periodo, con las sombras del propio modelo.",
+      },
       vertex_property: {
         title: "Valores del archivo del escaneo",
         lead: "Un número que el programa de escaneo guardó para cada punto: calidad, confianza, intensidad.",
@@ -914,6 +923,22 @@ export const texts = {
         hint: "el doble de la media",
         lead: "El cambio se mide según la normal media de esta zona.",
       },
+    },
+    sun: {
+      latitude: {
+        label: "Latitud",
+        hint: "por ejemplo 37,9",
+        lead: "Negativa en el sur.",
+        wrong: "Introduzca la latitud del lugar, de -90 a 90 grados.",
+      },
+      north: {
+        label: "Norte",
+        hint: "el del modelo",
+        lead: "En sentido horario desde la dirección de la vista frontal hacia el norte, visto desde arriba.",
+        wrong: "Introduzca la dirección del norte, de -360 a 360 grados.",
+      },
+      from: "Desde el comienzo de",
+      to: "Hasta el final de",
     },
     rays: "Rayos por punto",
     rays_hint: "Con más rayos, los valores son más suaves y el cálculo tarda más",

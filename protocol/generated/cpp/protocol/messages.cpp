@@ -883,6 +883,8 @@ std::string_view name(ShapeRecipeKind value) {
     case ShapeRecipeKind::change: return "change";
     case ShapeRecipeKind::level_of_detection: return "level_of_detection";
     case ShapeRecipeKind::significant_change: return "significant_change";
+    case ShapeRecipeKind::sun_hours: return "sun_hours";
+    case ShapeRecipeKind::sun_energy: return "sun_energy";
     case ShapeRecipeKind::vertex_property: return "vertex_property";
   }
   return {};
@@ -904,6 +906,8 @@ void read(const nlohmann::json& json, ShapeRecipeKind& value) {
   if (text == "change") value = ShapeRecipeKind::change;
   if (text == "level_of_detection") value = ShapeRecipeKind::level_of_detection;
   if (text == "significant_change") value = ShapeRecipeKind::significant_change;
+  if (text == "sun_hours") value = ShapeRecipeKind::sun_hours;
+  if (text == "sun_energy") value = ShapeRecipeKind::sun_energy;
   if (text == "vertex_property") value = ShapeRecipeKind::vertex_property;
 }
 
@@ -3253,6 +3257,10 @@ void read(const nlohmann::json& json, ShapeRecipe& value) {
   read_optional_member(json, "normal_scale_mm", value.normal_scale_mm);
   read_optional_member(json, "projection_scale_mm", value.projection_scale_mm);
   read_optional_member(json, "registration_mm", value.registration_mm);
+  read_optional_member(json, "latitude_deg", value.latitude_deg);
+  read_optional_member(json, "north_deg", value.north_deg);
+  read_optional_member(json, "from", value.from);
+  read_optional_member(json, "to", value.to);
   read_optional_member(json, "rays", value.rays);
   read_optional_member(json, "absolute", value.absolute);
   read_optional_member(json, "model", value.model);
@@ -3268,6 +3276,10 @@ nlohmann::json to_json(const ShapeRecipe& value) {
   write_optional_member(json, "normal_scale_mm", value.normal_scale_mm);
   write_optional_member(json, "projection_scale_mm", value.projection_scale_mm);
   write_optional_member(json, "registration_mm", value.registration_mm);
+  write_optional_member(json, "latitude_deg", value.latitude_deg);
+  write_optional_member(json, "north_deg", value.north_deg);
+  write_optional_member(json, "from", value.from);
+  write_optional_member(json, "to", value.to);
   write_optional_member(json, "rays", value.rays);
   write_member(json, "absolute", value.absolute);
   write_optional_member(json, "model", value.model);

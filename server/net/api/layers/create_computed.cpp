@@ -21,6 +21,10 @@ jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& body) {
   recipe.normal_scale_mm = body.normal_scale_mm;
   recipe.projection_scale_mm = body.projection_scale_mm;
   recipe.registration_mm = body.registration_mm;
+  recipe.latitude_deg = body.latitude_deg;
+  recipe.north_deg = body.north_deg;
+  recipe.from = body.from.value_or("");
+  recipe.to = body.to.value_or("");
   recipe.rays = body.rays;
   recipe.absolute = body.absolute;
   recipe.model = body.model.value_or("");

@@ -3,6 +3,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
+import { pageLocale } from "../../core/locale";
 import { ApiError } from "../../net/api-error";
 import type { Model, VertexPropertyName } from "../../core/types";
 import type { ModelSession } from "../../session/model-session";
@@ -10,12 +11,15 @@ import { numberInput } from "../../ui/number-input";
 import {
   kRays,
   kShapeGroups,
+  kSunAngles,
+  type Months,
   otherModels,
   recipeOf,
   shapeKind,
   type ShapeInput,
   type ShapeKind,
   type ShapeLength,
+  type SunAngle,
 } from "./shape-kinds";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
@@ -34,6 +38,9 @@ export class StrataShapeFields extends LitElement {
     normal: "",
     projection: "",
     registration: "",
+    latitude: "",
+    north: "",
+    months: { from: 1, to: 12 },
     rays: "",
     absolute: false,
     model: "",
@@ -139,6 +146,8 @@ export class StrataShapeFields extends LitElement {
             ${info.takes.includes("model") ? this.modelField() : nothing}
             ${info.takes.includes("property") ? this.propertyField() : nothing}
             ${kLengths.map((name) => (info.takes.includes(name) ? this.lengthField(name) : nothing))}
+            ${kAngles.map((name) => (info.takes.includes(name) ? this.angleField(name) : nothing))}
+            ${info.takes.includes("months") ? kEnds.map((end) => this.monthField(end)) : nothing}
             ${info.takes.includes("rays") ? this.raysField() : nothing}
             ${info.takes.includes("absolute") ? this.absoluteField() : nothing}
           </div>`
@@ -160,6 +169,33 @@ export class StrataShapeFields extends LitElement {
         mm
       </div>
       ${lead ? html`<small>${lead}</small>` : nothing}
+    </label>`;
+  }
+
+  private angleField(name: SunAngle): TemplateResult {
+    const { label, hint, lead } = words.sun[name];
+    const most = kSunAngles[name];
+    return html`<label class="field">
+      <span>${label}</span>
+      <div class="length">
+        ${numberInput({ name, value: this._input[name], placeholder: hint, min: -most, max: most, wrong: this.wrong.startsWith(name), typed: (text) => this.change({ [name]: text }) })}
+        °
+      </div>
+      <small>${lead}</small>
+    </label>`;
+  }
+
+  private monthField(end: keyof Months): TemplateResult {
+    const month = new Intl.DateTimeFormat(pageLocale(), { month: "long", timeZone: "UTC" });
+    const choose = (event: Event): void =>
+      this.change({
+        months: { ...this._input.months, [end]: Number((event.target as HTMLSelectElement).value) },
+      });
+    return html`<label class="field">
+      <span>${words.sun[end]}</span>
+      <select name=${end} @change=${choose}>
+        ${Array.from({ length: 12 }, (_, at) => html`<option value=${at + 1} ?selected=${at + 1 === this._input.months[end]}>${month.format(Date.UTC(2001, at))}</option>`)}
+      </select>
     </label>`;
   }
 
@@ -226,5 +262,8 @@ export class StrataShapeFields extends LitElement {
 }
 
 const kLengths = ["radius", "registration", "projection", "normal", "distance"] as const;
+
+const kAngles = ["latitude", "north"] as const;
+const kEnds = ["from", "to"] as const;
 
 const keyOf = ({ source, property: name }: VertexPropertyName): string => `${source}/${name}`;

@@ -14,12 +14,19 @@ export interface ShapeKindInfo {
   title: string;
   lead: string;
   /** The parameters that this kind requires. */
-  takes: readonly (ShapeLength | "rays" | "absolute" | "model" | "property")[];
+  takes: readonly (
+    ShapeLength | SunAngle | "months" | "rays" | "absolute" | "model" | "property"
+  )[];
 }
 
 /** The lengths in millimeters that users can enter. */
 export type ShapeLength = "radius" | "distance" | "normal" | "projection" | "registration";
 
+/** The angles in degrees that users can enter. */
+export type SunAngle = "latitude" | "north";
+export const kSunAngles = { latitude: 90, north: 360 } as const; // the largest values
+
+const kSunTakes = ["latitude", "north", "months"] as const;
 const kChangeTakes = ["model", "registration", "projection", "normal", "distance"] as const;
 
 const words = texts.shape.kinds;
@@ -60,6 +67,13 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
     ],
   },
   {
+    title: texts.shape.groups.sun,
+    kinds: [
+      { kind: "sun_hours", ...words.sun_hours, takes: kSunTakes },
+      { kind: "sun_energy", ...words.sun_energy, takes: kSunTakes },
+    ],
+  },
+  {
     title: texts.shape.groups.file,
     kinds: [{ kind: "vertex_property", ...words.vertex_property, takes: ["property"] }],
   },
@@ -68,9 +82,16 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
 export const shapeKind = (kind: ShapeKind): ShapeKindInfo =>
   kShapeGroups.flatMap((group) => group.kinds).find((info) => info.kind === kind)!;
 
+/** The first and the last month of a period, from 1 to 12. */
+export interface Months {
+  from: number;
+  to: number;
+}
+
 /** The user's input, as texts. */
-export interface ShapeInput extends Record<ShapeLength, string> {
+export interface ShapeInput extends Record<ShapeLength | SunAngle, string> {
   kind: ShapeKind;
+  months: Months;
   rays: string;
   absolute: boolean;
   model: string;
@@ -95,6 +116,19 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
       return { problem: texts.shape.bad_length, field: name };
     recipe[member] = value;
   }
+  for (const name of ["latitude", "north"] as const) {
+    const text = input[name];
+    if (!takes.includes(name) || (name === "north" && text.trim() === "")) continue;
+    const value = readNumber(text);
+    const most = kSunAngles[name];
+    if (!(Math.abs(value) <= most)) return { problem: texts.shape.sun[name].wrong, field: name };
+    recipe[`${name}_deg`] = value;
+  }
+  if (takes.includes("months")) {
+    const { from, to } = input.months;
+    recipe.from = `${twoDigits(from)}-01`;
+    recipe.to = `${twoDigits(to)}-${kDaysOfMonth[to - 1]}`;
+  }
   if (takes.includes("rays") && input.rays.trim() !== "") {
     const rays = readNumber(input.rays);
     const { least, most } = kRays;
@@ -116,6 +150,9 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
   }
   return recipe;
 }
+
+const kDaysOfMonth = [31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] as const;
+const twoDigits = (number: number): string => String(number).padStart(2, "0");
 
 /**
  * Returns the models that this one can be compared with. The models of this model's project are

@@ -20,6 +20,9 @@ const input: ShapeInput = {
   normal: "",
   projection: "",
   registration: "",
+  latitude: "",
+  north: "",
+  months: { from: 1, to: 12 },
   rays: "",
   absolute: false,
   model: "",
@@ -72,6 +75,27 @@ describe("a recipe from what was filled in", () => {
     for (const rays of ["15", "1025", "20.5", "many"])
       expect(recipeOf({ ...openness, rays })).toMatchObject({ field: "rays" });
   });
+  it("takes latitude, north and whole months for the sun alone", () => {
+    const sun = { ...input, kind: "sun_energy" as const, latitude: "-33.5" };
+    expect(recipeOf(sun)).toEqual({
+      kind: "sun_energy",
+      latitude_deg: -33.5,
+      from: "01-01",
+      to: "12-31",
+    });
+    expect(recipeOf({ ...sun, north: "0", months: { from: 11, to: 2 } })).toEqual({
+      kind: "sun_energy",
+      latitude_deg: -33.5,
+      north_deg: 0,
+      from: "11-01",
+      to: "02-28",
+    });
+    expect(recipeOf({ ...input, latitude: "50", north: "3" })).toEqual({ kind: "roughness" });
+    for (const latitude of ["", "91", "-90.1", "Athens"])
+      expect(recipeOf({ ...sun, latitude })).toMatchObject({ field: "latitude" });
+    for (const north of ["361", "up"])
+      expect(recipeOf({ ...sun, north })).toMatchObject({ field: "north" });
+  });
   it("names the field that is wrong", () => {
     for (const radius of ["0", "-3", "wide"])
       expect(recipeOf({ ...input, radius })).toEqual({
@@ -87,7 +111,7 @@ describe("a recipe from what was filled in", () => {
   });
   it("has words for every kind that the server knows", () => {
     const kinds = kShapeGroups.flatMap((group) => group.kinds.map(({ kind }) => kind));
-    expect(new Set(kinds).size).toBe(15);
+    expect(new Set(kinds).size).toBe(17);
     for (const group of kShapeGroups)
       for (const { title, lead } of group.kinds) expect(title && lead).toBeTruthy();
   });
