@@ -299,20 +299,21 @@ def test_neighborhoods(server):
     """Values within a radius along the surface, on two bands at x = 50."""
     expression = "case when x < 50 then 10 when y < 80 then 20 end"
     compute(server, "Bands", expression)
-    compute_along(server, "Mean", "focal_mean(bands, 1.5)")
+    # The radius has 10 texels. The time grows with the square of the radius near seams.
+    compute_along(server, "Mean", "focal_mean(bands, 0.5)")
     for x, right in ((20, 10), (50, 15), (80, 20)):
-        near(value(server, "mean", x, 50)["value"], right, 0.03)
+        near(value(server, "mean", x, 50)["value"], right, 0.05)
     # The part of a disc beyond a line at half of its radius is 0.1955.
-    near(value(server, "mean", 49.25, 50)["value"], 11.955, 0.03)
-    assert not value(server, "mean", 80, 85)["valid"]
-    near(value(server, "mean", 80, 81)["value"], 20, 0.001)
-    compute_along(server, "Relief", "focal_max(bands, 1.5) - focal_min(bands, 1.5)")
-    assert value(server, "relief", 49, 50)["value"] == 10
-    assert value(server, "relief", 47, 50)["value"] == 0
-    compute_along(server, "Variety", "focal_variety(bands, 1.5)", type="u8")
-    assert value(server, "variety", 51, 50)["value"] == 2
+    near(value(server, "mean", 49.75, 50)["value"], 11.955, 0.05)
+    assert not value(server, "mean", 80, 81)["valid"]
+    near(value(server, "mean", 80, 80.3)["value"], 20, 0.001)
+    compute_along(server, "Relief", "focal_max(bands, 0.5) - focal_min(bands, 0.5)")
+    assert value(server, "relief", 49.7, 50)["value"] == 10
+    assert value(server, "relief", 49, 50)["value"] == 0
+    compute_along(server, "Variety", "focal_variety(bands, 0.5)", type="u8")
+    assert value(server, "variety", 50.3, 50)["value"] == 2
     assert value(server, "variety", 60, 50)["value"] == 1
-    compute_along(server, "Spots", "hot_spot(bands, 1.5)")
+    compute_along(server, "Spots", "hot_spot(bands, 0.5)")
     low, high = value(server, "spots", 20, 50)["value"], value(server, "spots", 80, 40)["value"]
     assert low < -0.5 and high > 0.5, (low, high)
     job = compute(server, "Wide", "focal_mean(bands, 50)", expect=202)

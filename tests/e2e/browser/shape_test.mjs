@@ -162,6 +162,35 @@ test("long work shows how far it is, and is cancelled", async () => {
   );
 });
 
+test("the sun of a summer needs the latitude and the direction of north", async () => {
+  const { latitude, north, from, to } = words.shape.sun;
+  await start_computing(words.shape.kinds.sun_energy.title, { [latitude.label]: "91" });
+  await button(words.layer_dialog.compute).click();
+  await page.getByText(latitude.wrong).waitFor();
+  await page.getByLabel(latitude.label).fill("37.9");
+  await button(words.layer_dialog.compute).click();
+  await page.getByText(/direction of north is not known/).waitFor();
+  await page.getByLabel(north.label).fill("20");
+  await page.getByLabel(from).selectOption({ label: "June" });
+  await page.getByLabel(to).selectOption({ label: "August" });
+  await keep_picture("sun-dialog");
+  await button(words.layer_dialog.compute).click();
+  await button(words.layers.select(words.shape.kinds.sun_energy.title)).waitFor();
+  const layer = await server.json("GET", `${base}/layers/energy-of-the-sun`);
+  assert.equal(layer.unit, "kWh/m²");
+  const [edit] = await wait_for(async () => {
+    const { edits } = await server.json("GET", `${base}/layers/energy-of-the-sun/edits`);
+    return edits.length > 0 ? edits : null;
+  }, "the edit of the layer");
+  const { kind, latitude_deg, north_deg, from: first, to: last } = edit.recipe;
+  assert.deepEqual(
+    [kind, latitude_deg, north_deg, first, last],
+    ["sun_energy", 37.9, 20, "06-01", "08-31"],
+  );
+  await browser.settled();
+  await keep_picture("sun");
+});
+
 test("what cannot be computed says why", async () => {
   await start_computing("Distance to the edge");
   await button(words.layer_dialog.compute).click();
@@ -241,7 +270,7 @@ test("a table of numbers for the vertices of the scan is painted", async () => {
     JSON.stringify({ ...tenfold, histogram: [] }),
   );
 
-  browser.assert_no_complaints();
+  browser.assert_no_complaints(["status of 422"]);
   server.assert_clean_log();
 });
 

@@ -63,10 +63,10 @@ export class StrataShapeFields extends LitElement {
         display: flex;
         flex-wrap: wrap;
         gap: var(--space-3);
-        align-items: end;
+        align-items: start;
       }
       .parameters .field {
-        flex: 1 1 180px;
+        flex: 1 1 220px;
       }
       .length {
         display: flex;
