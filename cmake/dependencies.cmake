@@ -12,6 +12,7 @@ find_package(embree 3 REQUIRED)
 find_package(meshoptimizer REQUIRED)
 find_package(OpenMesh REQUIRED)
 find_package(Qhull REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 pkg_check_modules(DRACO REQUIRED IMPORTED_TARGET draco)
 pkg_check_modules(ZIP REQUIRED IMPORTED_TARGET libzip)
 pkg_check_modules(BROTLI REQUIRED IMPORTED_TARGET libbrotlienc)
@@ -33,6 +34,12 @@ pkg_check_modules(UTF8PROC REQUIRED IMPORTED_TARGET libutf8proc)
 pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libcurl)
 pkg_check_modules(PANGOCAIRO REQUIRED IMPORTED_TARGET pangocairo)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
+
+# Eigen consists of headers. The definition makes the compiler refuse its files whose license is not
+# MPL 2.0.
+add_library(strata_eigen INTERFACE)
+target_link_libraries(strata_eigen INTERFACE Eigen3::Eigen)
+target_compile_definitions(strata_eigen INTERFACE EIGEN_MPL2_ONLY)
 
 # Only the header of this package is used. One unit compiles the header with only the required
 # formats, because the package's library also reads other formats.

@@ -19,6 +19,7 @@ const howTo = {
     "clean-up-regions",
     "measure",
     "measure-distances",
+    "interpolate-readings",
     "import-maps",
   ],
   "Keep records": ["keep-records", "use-lists-of-terms", "attach-files"],

@@ -61,6 +61,10 @@ struct Expression {
     focal_max,      //
     focal_variety,  // the number of different values
     hot_spot,       // the z-score of a number at the texels around
+    // Along the surface, from the readings of a number (query/interpolation/interpolate) and the
+    // range `number`.
+    interpolated,         // the expected value
+    interpolation_error,  // its standard error
     // The number at `index` of the values that are read from records (expression/record_parts), for
     // the key in the layer `name`.
     record_number,
@@ -124,7 +128,7 @@ struct Expression {
   bool is_condition() const { return op >= Op::truth; }
   bool is_text() const { return op == Op::text || op == Op::fold_case || op == Op::fold_accents; }
   bool is_column() const { return op == Op::column; }
-  bool is_surface_function() const { return op >= Op::distance && op <= Op::hot_spot; }
+  bool is_surface_function() const { return op >= Op::distance && op <= Op::interpolation_error; }
   bool operator==(const Expression&) const = default;
 };
 

@@ -27,7 +27,9 @@ inline constexpr std::array kSurfaceFunctions{
     NamedSurfaceFunction{Expression::Op::focal_min, "focal_min", true},
     NamedSurfaceFunction{Expression::Op::focal_max, "focal_max", true},
     NamedSurfaceFunction{Expression::Op::focal_variety, "focal_variety", true},
-    NamedSurfaceFunction{Expression::Op::hot_spot, "hot_spot", true}};
+    NamedSurfaceFunction{Expression::Op::hot_spot, "hot_spot", true},
+    NamedSurfaceFunction{Expression::Op::interpolated, "interpolated", true},
+    NamedSurfaceFunction{Expression::Op::interpolation_error, "interpolation_error", true}};
 
 // The slugs of the layers that take the place of functions begin with this text.
 inline constexpr std::string_view kSurfaceFunctionPrefix = "surface.function.";

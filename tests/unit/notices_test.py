@@ -11,6 +11,7 @@ EXPECTED = (
     "nlohmann-json3-dev",
     "libcli11-dev",
     "libglm-dev",
+    "libeigen3-dev",
     "libvalijson-dev",
     "libspdlog-dev",
     "libboost1.81-dev",

@@ -87,8 +87,7 @@ Result<PreparedFormula> prepare(const Services& services, room::Room& room, cons
         STRATA_TRY(shape_view(services.store, room, shapes[i], layer.resolution, progress)));
   }
   if (!formula.functions.empty()) {
-    prepared.memory =
-        STRATA_TRY(reserve_surface_functions(services, room, layer, formula.functions.size()));
+    prepared.memory = STRATA_TRY(reserve_surface_functions(services, room, layer, formula));
     // Read first: if a layer changes afterwards, the result is out of date. The functions read the
     // applied edits. The journal writes these edits before the edit that paints the result.
     prepared.sequence = room.edits().sequence();

@@ -11,6 +11,7 @@
 #include "mesh/surface/geometry.h"
 #include "mesh/texels/texel_graph.h"
 #include "query/conditions/expression_evaluator.h"
+#include "query/interpolation/interpolate.h"
 #include "query/regions/distance_values.h"
 #include "query/regions/focal.h"
 #include "room/layers.h"
@@ -84,6 +85,10 @@ class SurfaceFunctionValues {
     const auto values = query::read_surface_values(tiles, type, *map_);
     if (function.op == Op::nearest)
       return query::nearest_values(values, function.number, *map_, *graph_, progress, threads);
+    if (function.op == Op::interpolated || function.op == Op::interpolation_error)
+      return query::interpolated_values(
+          function.op == Op::interpolated ? query::Interpolated::mean : query::Interpolated::error,
+          values, type, function.number, *map_, *graph_, kField, progress, threads);
     return query::focal_values(focal_of(function.op), values, type, function.number, *map_, *graph_,
                                kField, progress, threads);
   }
@@ -133,16 +138,22 @@ Result<std::vector<query::LayerView>> views_read_by(room::Room& room,
 }  // namespace
 
 Result<MemoryLedger::Share> reserve_surface_functions(const Services& services, room::Room& room,
-                                                      const Layer& layer, std::size_t functions) {
+                                                      const Layer& layer,
+                                                      const query::SurfaceFormula& formula) {
   const auto map = STRATA_TRY(room.surface().map(layer.resolution));
   const auto graph = STRATA_TRY(room.surface().graph(layer.resolution));
   std::uint64_t linked = 0;
   for (const std::uint64_t texels : graph->has_links)
     linked += static_cast<std::uint64_t>(std::popcount(texels));
+  const bool interpolates = std::ranges::any_of(formula.functions, [](const auto& each) {
+    const auto op = each.function.op;
+    return op == Expression::Op::interpolated || op == Expression::Op::interpolation_error;
+  });
   return services.rooms.memory().reserve(
-      map->block_of_slot.size() * 64 * (kWorkBytesPerTexel + functions * kValueBytesPerTexel) +
-          linked * kSeamBytesPerTexel,
-      "distances along the surface");
+      map->block_of_slot.size() * 64 *
+              (kWorkBytesPerTexel + formula.functions.size() * kValueBytesPerTexel) +
+          linked * kSeamBytesPerTexel + (interpolates ? query::kInterpolationBytes : 0),
+      "functions along the surface");
 }
 
 Result<void> compute_surface_functions(const Services& services, room::Room& room,

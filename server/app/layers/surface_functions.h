@@ -15,7 +15,8 @@ namespace strata::app {
 
 // Reserves the memory for compute_surface_functions. Keep it until the formula has been evaluated.
 Result<MemoryLedger::Share> reserve_surface_functions(const Services& services, room::Room& room,
-                                                      const Layer& layer, std::size_t functions);
+                                                      const Layer& layer,
+                                                      const query::SurfaceFormula& formula);
 
 // Computes the functions along the surface of the formula of a computed layer, at the texels of the
 // layer. They read the layers and records in their current state, with the rules for formulas of

@@ -321,6 +321,38 @@ def test_neighborhoods(server):
     assert done["state"] == "failed" and "40 texels" in done["problem"]["detail"], done
 
 
+def test_interpolation(server):
+    """Readings of a plane, 20 + x / 10, at 16 spots. Each spot of one value is one reading."""
+    server.ok("POST", M + "/layers", {"name": "Moisture", "type": "f32", "resolution": 2048})
+    for x in (12, 37, 62, 87):
+        for y in (12, 37, 62, 87):
+            dab(server, f"{M}/layers/moisture", 20 + x / 10, x, y, 2)
+    mean = compute_along(server, "Interpolated", "interpolated(moisture, 100)")
+    assert mean["type"] == "f32" and mean["inputs"] == ["moisture"], mean
+    for x, y in ((25, 25), (50, 50), (75, 30), (62, 62)):
+        near(value(server, "interpolated", x, y)["value"], 20 + x / 10, 0.02)
+    compute_along(server, "Error", "interpolation_error(moisture, 100)")
+    at_reading = value(server, "error", 37, 37)["value"]
+    between, outside = (value(server, "error", *at)["value"] for at in ((50, 50), (99, 99)))
+    assert 0 < at_reading < between < outside < 5, (at_reading, between, outside)
+    # the functions in one formula, and places where the readings decide
+    compute_along(server, "Damp", "interpolated(moisture, 100) > 25", type="u8")
+    near(server.get(M + "/layers/damp/statistics").json()["area_m2"], 50 * 100 * 1e-6, 0.05)
+
+    for expression, text in (
+        ("interpolated(moisture, 0)", "above 0"),
+        ("interpolated(moisture, 0.1)", "or more"),
+        ("interpolated(moisture, 1000)", "or less"),
+        ("interpolated(if(moisture > 28 and y > 50, 1, null), 100)", "Readings found"),
+        ("interpolation_error(moisture * 0, 100)", "same value"),
+    ):
+        job = compute(server, "Refused", expression, expect=202)
+        done = server.wait_for_job(job["id"])
+        assert done["state"] == "failed", done
+        assert done["problem"]["field"] == "expression", done
+        assert text in done["problem"]["detail"], done
+
+
 def test_distances_work_in_computed_layers_only(server):
     def refused(answer, reason, field):
         problem = answer.json()

@@ -54,6 +54,17 @@ TEST(SurfaceFunctions, of_neighborhoods_have_a_number_and_a_radius) {
   }
 }
 
+TEST(SurfaceFunctions, of_readings_have_a_number_and_a_range) {
+  for (const auto& [name, op] : {std::pair("interpolated", Op::interpolated),
+                                 std::pair("interpolation_error", Op::interpolation_error)}) {
+    const Expression interpolated = number(std::string(name) + "(round(wet * 10) / 10, 80)");
+    EXPECT_EQ(interpolated.op, op);
+    EXPECT_EQ(interpolated.number, 80);
+    EXPECT_EQ(interpolated.parts[0], number("round(wet * 10) / 10"));
+    EXPECT_TRUE(interpolated.is_surface_function());
+  }
+}
+
 TEST(SurfaceFunctions, take_a_layer_for_the_places_where_it_has_a_value) {
   EXPECT_EQ(number("distance(crack)"), number("distance(valid(crack))"));
   EXPECT_EQ(number("distance(\"3d\", 4)"), number("distance(valid(\"3d\"), 4)"));
@@ -96,6 +107,10 @@ TEST(SurfaceFunctions, are_refused_with_the_reason_and_the_place) {
            {"nearest('a')", kWrongType, 8},
            {"focal_mean(wet)", kSyntax, 14, 0, "a distance"},
            {"focal_min(wet > 1, 5)", kExpectsNumber, 10},
+           {"interpolated(wet)", kSyntax, 16, 0, "a distance"},
+           {"interpolated(wet > 1, 80)", kExpectsNumber, 13},
+           {"interpolation_error(wet, 80 mm)", kUnit, 25, 5, "unit of the model"},
+           {"interpolate(wet, 80)", kUnknownFunction, 0, 11, "Did you mean interpolated"},
            {"focal_max(wet, dry)", kSyntax, 15, 0, "as a number"},
            {"distanc(wet > 1)", kUnknownFunction, 0, 7, "Did you mean distance"},
        }) {

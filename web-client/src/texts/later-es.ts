@@ -292,6 +292,8 @@ export const laterTexts = {
       ["focal_max(", "el valor mayor en un radio: focal_max(capa, 20)"],
       ["focal_variety(", "cantidad de valores distintos en un radio: focal_variety(capa, 20)"],
       ["hot_spot(", "lo inusual que es la media en un radio: hot_spot(capa, 20)"],
+      ["interpolated(", "mediciones interpoladas: interpolated(capa, alcance)"],
+      ["interpolation_error(", "error de la interpolación: interpolation_error(capa, alcance)"],
     ],
   },
   layer_dialog: {

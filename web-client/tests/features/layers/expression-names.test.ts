@@ -86,7 +86,7 @@ describe("the names that an expression can contain", () => {
   it("are functions along the surface only in computed layers", () => {
     const functions = "Functions and operators";
     expect(textsOf(of([], true), functions)).toEqual(
-      expect.arrayContaining(["distance(", "within(", "nearest(", "focal_mean("]),
+      expect.arrayContaining(["distance(", "within(", "nearest(", "focal_mean(", "interpolated("]),
     );
     expect(textsOf(of([]), functions)).not.toContain("distance(");
   });
