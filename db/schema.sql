@@ -1630,7 +1630,7 @@ CREATE TABLE public.jobs (
     ended timestamp with time zone,
     node uuid,
     CONSTRAINT jobs_check CHECK (((ended IS NULL) = (state = 'begun'::text))),
-    CONSTRAINT jobs_kind_check CHECK ((kind = ANY (ARRAY['import'::text, 'layers'::text, 'look'::text, 'figure'::text, 'regions'::text, 'changes'::text]))),
+    CONSTRAINT jobs_kind_check CHECK ((kind = ANY (ARRAY['import'::text, 'layers'::text, 'look'::text, 'figure'::text, 'regions'::text, 'changes'::text, 'analysis'::text]))),
     CONSTRAINT jobs_state_check CHECK ((state = ANY (ARRAY['begun'::text, 'done'::text, 'failed'::text, 'cancelled'::text, 'lost'::text])))
 );
 
@@ -1672,6 +1672,8 @@ CREATE TABLE public.layer_origins (
     layer_id bigint NOT NULL,
     origin text NOT NULL,
     edited_by_hand boolean DEFAULT false NOT NULL,
+    analysis jsonb,
+    CONSTRAINT layer_origins_analysis_check CHECK ((jsonb_typeof(analysis) = 'object'::text)),
     CONSTRAINT layer_origins_origin_check CHECK ((origin = ANY (ARRAY['expression'::text, 'shape'::text])))
 );
 

@@ -35,7 +35,7 @@ const howTo = {
     "use-the-trash",
   ],
   "Show results": ["save-views", "print-figures", "make-tours", "run-a-kiosk", "show-the-demo"],
-  Scripts: ["write-scripts", "query-with-sql"],
+  Scripts: ["write-scripts", "run-an-analysis", "query-with-sql"],
   Administration: [
     "install",
     "operate-a-site",

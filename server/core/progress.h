@@ -16,6 +16,16 @@ class Progress {
  public:
   virtual ~Progress() = default;
 
+  // Divides the task into `count` parts of equal length and begins the part with this number, from
+  // 1. The stages and messages of the code that does the part then belong to the part only.
+  void begin_part(int number, int count) {
+    std::lock_guard lock(mutex_);
+    part_ = number;
+    parts_ = count;
+    from_ = 0;
+    to_ = 1;
+    set(0, "");
+  }
   // Maps later reports to the part [from, to] of the whole task. So the code of a step does not
   // depend on its position in the task.
   void begin_stage(double from, double to) {
@@ -25,8 +35,7 @@ class Progress {
   }
   void report(double fraction, std::string message) {
     std::lock_guard lock(mutex_);
-    fraction_ = from_ + (to_ - from_) * fraction;
-    message_ = std::move(message);
+    set(fraction, std::move(message));
   }
   double fraction() const {
     std::lock_guard lock(mutex_);
@@ -45,7 +54,16 @@ class Progress {
   virtual bool cancelled() const { return cancelled_; }
 
  private:
+  void set(double fraction, std::string message) {
+    fraction_ = (part_ - 1 + from_ + (to_ - from_) * fraction) / parts_;
+    message_ = std::move(message);
+    if (parts_ == 1) return;
+    const std::string part = "Step " + std::to_string(part_) + " of " + std::to_string(parts_);
+    message_ = message_.empty() ? part : part + ": " + message_;
+  }
+
   mutable std::mutex mutex_;
+  int part_ = 1, parts_ = 1;
   double from_ = 0, to_ = 1;
   double fraction_ = 0;
   std::string message_;

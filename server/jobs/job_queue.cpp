@@ -22,7 +22,8 @@ constexpr std::size_t kMaxWaiting = 64;
 constexpr int kIdTries = 64;
 constexpr std::size_t kMaxRemembered = 1000;
 
-constexpr std::string_view kKinds[] = {"import", "layers", "look", "figure", "regions", "changes"};
+constexpr std::string_view kKinds[] = {"import",  "layers",  "look",    "figure",
+                                       "regions", "changes", "analysis"};
 
 // Returns the Error of a job that ended because the server restarted.
 Error lost_problem(JobKind kind) {
@@ -35,6 +36,7 @@ Error lost_problem(JobKind kind) {
               "Start the import again.",
               {}};
     case JobKind::layers:
+    case JobKind::analysis:
       return {ErrorCode::unavailable,
               kTitle,
               "The server restarted before this job finished. If the model has hidden, incomplete "

@@ -22,7 +22,7 @@ class Jobs;
 namespace strata::jobs {
 
 // The kind of a job's result.
-enum class JobKind { import, layers, image, figure, regions, changes };
+enum class JobKind { import, layers, image, figure, regions, changes, analysis };
 enum class JobState { queued, running, done, failed, cancelled };
 
 // The result of a job.
@@ -32,7 +32,7 @@ struct JobResult {
   ModelId model = 0;
   std::vector<LayerId> layers;          // new layers of the model
   std::optional<SurfaceImageId> image;  // a new surface image of the model
-  // A report for the user (see the schema `TransferReport`). Null: no report.
+  // A report for the user, whose schema depends on the kind of the job. Null: no report.
   nlohmann::json report;
   std::shared_ptr<const TemporaryFile> file;
 };

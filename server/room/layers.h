@@ -57,10 +57,12 @@ class Layers {
   // Call after records of a table have changed. Layers that are computed from them become stale,
   // and layers that take their colors from the terms of the table change.
   virtual void records_changed(TableId table_id) = 0;
-  // Checks whether a formula for a computed layer can be evaluated in this room. Returns an
-  // `invalid` error at `field` in the same cases as bind_for_layer.
+  // Checks whether a formula for a computed layer can be evaluated in this room, when it also has
+  // the layers `planned`. Returns an `invalid` error at `field` in the same cases as
+  // bind_for_layer.
   virtual Result<void> check_expression(const Expression& expression, const std::string& field,
-                                        Visibility layer) const = 0;
+                                        Visibility layer,
+                                        const std::vector<Layer>& planned) const = 0;
 };
 
 // Returns the error for a layer that does not exist or that the role does not see.

@@ -71,8 +71,9 @@ class FilteredLayers final : public Layers {
   }
   void records_changed(TableId table_id) override { layers_.records_changed(table_id); }
   Result<void> check_expression(const Expression& expression, const std::string& field,
-                                Visibility layer) const override {
-    return layers_.check_expression(expression, field, layer);
+                                Visibility layer,
+                                const std::vector<Layer>& planned) const override {
+    return layers_.check_expression(expression, field, layer, planned);
   }
 
  private:

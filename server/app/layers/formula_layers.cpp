@@ -134,10 +134,10 @@ Result<Expression> parse_formula(const std::string& text) {
 }
 
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
-                                  Visibility visibility, std::optional<LayerId> self) {
+                                  Visibility visibility, std::optional<LayerId> self,
+                                  const std::vector<Layer>& planned) {
   const auto expression = STRATA_TRY(parse_formula(text));
   const std::vector<Layer> layers = room.layers().all();
-  const auto shapes = room::shapes_read(expression, views_of(layers));
   LayerFormula formula;
   formula.expression = text;
   formula.automatic = automatic;
@@ -154,7 +154,7 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
     formula.inputs.push_back(std::move(input));
   }
   std::ranges::sort(formula.inputs, {}, &LayerFormula::Input::slug);
-  STRATA_TRY(room.layers().check_expression(expression, "expression", visibility));
+  STRATA_TRY(room.layers().check_expression(expression, "expression", visibility, planned));
   return formula;
 }
 

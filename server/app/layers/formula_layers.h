@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/layers/new_layers.h"
 #include "app/services.h"
@@ -23,10 +24,12 @@ Result<Expression> parse_formula(const std::string& text);
 
 // Finds the layers, the columns of their records and the properties of the surface that the text
 // names on this model. `self` is the computed layer, if it exists. `visibility` is its visibility.
-// Users who can see the layer must also be allowed to see its inputs. Refuses syntax errors and
-// unknown names (422 at `expression`, with the position of the character).
+// Users who can see the layer must also be allowed to see its inputs. The text can also name
+// `planned` layers, which do not exist yet. They are no inputs of the returned formula. Refuses
+// syntax errors and unknown names (422 at `expression`, with the position of the character).
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
-                                  Visibility visibility, std::optional<LayerId> self = {});
+                                  Visibility visibility, std::optional<LayerId> self = {},
+                                  const std::vector<Layer>& planned = {});
 
 // Computes the content of the layer again, as one edit of the author, and notifies participants.
 // Without `overwrites`, refuses a layer that users have edited (409). Returns the layer after the

@@ -4,6 +4,11 @@
 
 namespace strata {
 
+nlohmann::json to_json(const LayerAnalysis& analysis) {
+  return {
+      {"name", analysis.name}, {"step", analysis.step}, {"of", analysis.of}, {"job", analysis.job}};
+}
+
 nlohmann::json to_json(const Layer& layer) {
   nlohmann::json json{{"id", layer.id},
                       {"model", layer.model_id},
@@ -38,7 +43,10 @@ nlohmann::json to_json(const Layer& layer) {
     json["recompute"] = layer.formula->automatic ? "automatic" : "manual";
     json["inputs"] = std::move(inputs);
     json["stale"] = layer.formula->stale;
+    if (layer.formula->computed_sequence > 0)
+      json["computed_sequence"] = layer.formula->computed_sequence;
   }
+  if (layer.analysis) json["analysis"] = to_json(*layer.analysis);
   return json;
 }
 

@@ -35,6 +35,15 @@ struct LayerFormula {
   bool stale = true;          // the values are out of date, according to this copy of the metadata
 };
 
+// The analysis that computed a layer, as one of its steps (app/layers/analysis.h).
+struct LayerAnalysis {
+  std::string name;
+  int step = 0;  // from 1
+  int of = 0;    // number of steps
+  JobId job = 0;
+  bool operator==(const LayerAnalysis&) const = default;
+};
+
 // The origin of values that were computed and not painted.
 enum class LayerOrigin { expression, shape };
 
@@ -68,6 +77,7 @@ struct Layer {
   std::optional<TableId> table;
   std::optional<LayerFormula> formula;
   std::optional<LayerOrigin> origin;
+  std::optional<LayerAnalysis> analysis;  // only of a layer with an origin
   // Set when a layer with an origin is unlocked. Its values may then differ from the computed
   // values.
   bool edited_by_hand = false;
@@ -80,6 +90,7 @@ inline bool is_as_computed(const Layer& layer) {
   return layer.origin && layer.locked && !layer.edited_by_hand;
 }
 
+nlohmann::json to_json(const LayerAnalysis& analysis);
 nlohmann::json to_json(const Layer& layer);
 
 }  // namespace strata

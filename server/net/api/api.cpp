@@ -185,6 +185,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_texel_routes(router_, context_);
   add_change_routes(router_, context_);
   add_cleanup_routes(router_, context_);
+  add_analysis_routes(router_, context_);
   add_shape_routes(router_, context_);
   add_map_routes(router_, context_);
   add_orthophoto_routes(router_, context_);

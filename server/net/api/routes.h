@@ -53,6 +53,7 @@ void add_rollout_routes(Router& router, const RouteContext& context);
 void add_texel_routes(Router& router, const RouteContext& context);
 void add_change_routes(Router& router, const RouteContext& context);
 void add_cleanup_routes(Router& router, const RouteContext& context);
+void add_analysis_routes(Router& router, const RouteContext& context);
 void add_shape_routes(Router& router, const RouteContext& context);
 void add_map_routes(Router& router, const RouteContext& context);
 void add_orthophoto_routes(Router& router, const RouteContext& context);

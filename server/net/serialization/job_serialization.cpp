@@ -17,9 +17,10 @@ nlohmann::json to_json(const jobs::JobStatus& job) {
   if (!job.result->layers.empty()) json["layers"] = job.result->layers;
   if (job.result->image) json["look"] = *job.result->image;
   if (const auto& report = job.result->report; !report.is_null())
-    json[job.kind == jobs::JobKind::regions   ? "cleanup"
-         : job.kind == jobs::JobKind::changes ? "changes"
-                                              : "report"] = report;
+    json[job.kind == jobs::JobKind::regions    ? "cleanup"
+         : job.kind == jobs::JobKind::changes  ? "changes"
+         : job.kind == jobs::JobKind::analysis ? "analysis"
+                                               : "report"] = report;
   if (const auto& file = job.result->file)
     json["file"] = {{"name", file->name}, {"media_type", file->media_type}, {"bytes", file->bytes}};
   return json;

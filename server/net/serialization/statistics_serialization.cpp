@@ -82,6 +82,17 @@ Result<room::StatisticsOptions> statistics_options(const Request& request) {
   return options;
 }
 
+room::StatisticsOptions statistics_options(
+    const std::optional<std::vector<protocol::StatisticsPart>>& include) {
+  room::StatisticsOptions options;
+  for (const auto part : include.value_or(std::vector<protocol::StatisticsPart>{})) switch (part) {
+      case protocol::StatisticsPart::pieces: options.pieces = true; break;
+      case protocol::StatisticsPart::perimeter: options.perimeter = true; break;
+      case protocol::StatisticsPart::quantiles: options.quantiles = true; break;
+    }
+  return options;
+}
+
 nlohmann::json bounds_json(const glm::dvec3& low, const glm::dvec3& high) {
   return {{"min", vec3(low)}, {"max", vec3(high)}};
 }

@@ -2,9 +2,12 @@
 
 #include <glm/glm.hpp>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
+#include "protocol/messages.h"
 
 namespace strata::app {
 struct SurveyStatistics;
@@ -25,6 +28,9 @@ struct Request;
 
 // Returns the parts in the query parameter `include`. Returns 422 for an unknown part.
 Result<room::StatisticsOptions> statistics_options(const Request& request);
+// Returns the parts in the member `include` of a body.
+room::StatisticsOptions statistics_options(
+    const std::optional<std::vector<protocol::StatisticsPart>>& include);
 
 nlohmann::json bounds_json(const glm::dvec3& low, const glm::dvec3& high);
 nlohmann::json to_json(const query::Statistics& statistics);

@@ -164,10 +164,11 @@ void OpenRoom::LayersPart::records_changed(TableId table_id) {
 }
 
 Result<void> OpenRoom::LayersPart::check_expression(const Expression& expression,
-                                                    const std::string& field,
-                                                    Visibility layer) const {
+                                                    const std::string& field, Visibility layer,
+                                                    const std::vector<Layer>& planned) const {
   std::vector<query::LayerView> views;
   for (const Layer& each : room_.layer_list()) views.push_back({each, {}});
+  for (const Layer& each : planned) views.push_back({each, {}});
   for (const std::string& shape : shapes_read(expression, views)) {
     views.emplace_back();
     views.back().layer.slug = std::string(kShapePrefix) + shape;

@@ -33,7 +33,7 @@ class OpenRoom::LayersPart final : public Layers {
                               const std::map<TableId, std::int64_t>& tables) override;
   void records_changed(TableId table_id) override;
   Result<void> check_expression(const Expression& expression, const std::string& field,
-                                Visibility layer) const override;
+                                Visibility layer, const std::vector<Layer>& planned) const override;
 
   // For a room that follows another node (room/open/following.h): replaces the properties of the
   // layers by the stored ones, and unloads the layers that are not stored. Keeps the content of the

@@ -22,6 +22,7 @@ constexpr auto kLayerColumns = sql(
     "table_id, sequence, version, locked, visibility, review, labels, descriptions, group_name, blend, "
     "(SELECT o.origin FROM layer_origins o WHERE o.layer_id = layers.id), "
     "coalesce((SELECT o.edited_by_hand FROM layer_origins o WHERE o.layer_id = layers.id), false), "
+    "(SELECT o.analysis FROM layer_origins o WHERE o.layer_id = layers.id), "
     "expression, automatic, computed_sequence, "
     "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "
     "t.sequence > i.table_sequence), ",
@@ -44,6 +45,11 @@ Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
 nlohmann::json palette_to_keep(const Layer& layer) {
   if (!layer.palette_of_terms) return to_json(layer.palette);
   return to_json(terms_palette({}));
+}
+
+LayerAnalysis analysis_of(const nlohmann::json& stored) {
+  return {stored.at("name").get<std::string>(), stored.at("step").get<int>(),
+          stored.at("of").get<int>(), stored.at("job").get<JobId>()};
 }
 
 template <class Id>
@@ -88,6 +94,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   if (const auto origin = row.optional_text())
     layer.origin = *origin == "shape" ? LayerOrigin::shape : LayerOrigin::expression;
   layer.edited_by_hand = row.boolean();
+  if (const auto analysis = row.optional_json()) layer.analysis = analysis_of(*analysis);
   const auto expression = row.optional_text();
   if (!expression) return layer;
   LayerFormula formula;
@@ -150,12 +157,15 @@ constexpr std::size_t kMaxDescriptionLength = 40000;  // bytes of 10000 characte
 Result<void> keep_origin(PgConnection& connection, LayerId layer_id, const Layer& layer) {
   if (!layer.origin) return {};
   auto inserted = connection.query(
-      "INSERT INTO layer_origins (layer_id, origin, edited_by_hand) VALUES ($1, $2, $3) ON CONFLICT (layer_id) "
-      "DO UPDATE SET origin = excluded.origin, edited_by_hand = excluded.edited_by_hand",
+      "INSERT INTO layer_origins (layer_id, origin, edited_by_hand, analysis) VALUES ($1, $2, $3, $4::jsonb) "
+      "ON CONFLICT (layer_id) DO UPDATE SET origin = excluded.origin, edited_by_hand = excluded.edited_by_hand, "
+      "analysis = excluded.analysis",
       Params()
           .id(layer_id)
           .text(*layer.origin == LayerOrigin::shape ? "shape" : "expression")
-          .boolean(layer.edited_by_hand));
+          .boolean(layer.edited_by_hand)
+          .optional_text(layer.analysis ? std::optional(to_json(*layer.analysis).dump())
+                                        : std::nullopt));
   return inserted ? Result<void>{} : tl::unexpected(inserted.error());
 }
 
@@ -323,8 +333,9 @@ Result<Layer> Layers::update(Layer layer, const IdempotentResponse<Layer>& answe
             .text(name(layer.blend))));
     if (row.rows() > 0) {
       auto now = STRATA_TRY(read_layer(connection, row, 0));
-      const bool same_origin =
-          now.origin == layer.origin && now.edited_by_hand == layer.edited_by_hand;
+      const bool same_origin = now.origin == layer.origin &&
+                               now.edited_by_hand == layer.edited_by_hand &&
+                               now.analysis == layer.analysis;
       const bool is_same_formula = same_formula(now.formula, layer.formula);
       if (same_origin && is_same_formula) return now;
       STRATA_TRY(keep_origin(connection, layer.id, layer));

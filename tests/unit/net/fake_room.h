@@ -91,7 +91,8 @@ class FakeLayers final : public room::Layers {
     return fail(ErrorCode::internal, "Not here", "");
   }
   void records_changed(TableId) override {}
-  Result<void> check_expression(const Expression&, const std::string&, Visibility) const override {
+  Result<void> check_expression(const Expression&, const std::string&, Visibility,
+                                const std::vector<Layer>&) const override {
     return {};
   }
 

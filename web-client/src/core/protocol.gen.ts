@@ -336,6 +336,17 @@ export type Recompute = "manual" | "automatic";
 /** How the colors of a layer are combined with the colors below. normal: the layer covers the colors below. multiply: the result is never lighter than the colors below. screen: the result is never darker than the colors below. With multiply and screen, the colors differ from those in the legend. */
 export type LayerBlend = "normal" | "multiply" | "screen";
 
+/** Analysis that computed a layer. Absent if the layer was created in another way, or if its expression was changed since. */
+export interface LayerAnalysis {
+  name: string;
+  /** Number of the step that computed the layer. The first step has the number 1. */
+  step: number;
+  /** Number of steps. */
+  of: number;
+  /** Id of the job. The server keeps its report for seven days. */
+  job: number;
+}
+
 /** Layer. */
 export interface Layer {
   id: number;
@@ -378,6 +389,9 @@ export interface Layer {
   inputs?: string[];
   /** For layers that are computed from an expression, true if data that the expression reads has changed since the computation. */
   stale?: boolean;
+  /** For layers that are computed from an expression, the sequence of the model whose state the last computation read. Absent before the first computation. */
+  computed_sequence?: number;
+  analysis?: LayerAnalysis;
   /** Sequence of the last edit of the layer. */
   sequence: number;
 }
@@ -1903,6 +1917,102 @@ export interface ObjectPatch {
   name: ObjectName;
 }
 
+/** Layer that a step of an analysis read. */
+export interface AnalysisInput {
+  /** Id of the layer. */
+  layer: number;
+  /** Slug at the time of the analysis. */
+  slug: string;
+}
+
+/** How the content of a layer was computed. A shape recipe that includes its default values, or a transfer (`kind` is transfer). */
+export interface Recipe {
+  kind: string;
+  radius_mm?: number;
+  distance_mm?: number;
+  normal_scale_mm?: number;
+  projection_scale_mm?: number;
+  registration_mm?: number;
+  latitude_deg?: number;
+  north_deg?: number;
+  from?: string;
+  to?: string;
+  tolerance_mm?: number;
+  max_angle?: number;
+  rays?: number;
+  absolute?: boolean;
+  model?: string;
+  layer?: string;
+  property?: string;
+  source?: string;
+}
+
+/** Bin of a histogram. Values from `from` (included) to `to` (excluded). The last bin includes `to`. */
+export interface HistogramBin {
+  from: number;
+  to: number;
+  texels: number;
+  area_m2: number;
+}
+
+/** Statistics of one key. */
+export interface KeyStatistics {
+  key: number;
+  texels: number;
+  area_m2: number;
+  centroid: Point3;
+  bounds: Bounds;
+  /** Number of connected areas of this key, if requested. */
+  pieces?: number;
+  /** Length of the borders of these areas along the surface, if requested. */
+  perimeter_m?: number;
+}
+
+/** Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values. */
+export interface Statistics {
+  texels: number;
+  area_m2: number;
+  min?: number;
+  max?: number;
+  mean?: number;
+  std?: number;
+  /** Number of connected areas, if requested. In layers of whole numbers, each area has a single value. */
+  pieces?: number;
+  /** Length of the borders of the valid areas along the surface, if requested. It includes open edges of the mesh, but not seams of the atlas. */
+  perimeter_m?: number;
+  quantiles?: Quantiles;
+  histogram: HistogramBin[];
+  keys: KeyStatistics[];
+}
+
+/** Result of a step of an analysis. */
+export interface AnalysisStepReport {
+  /** Id of the new layer, or of the layer with these statistics. */
+  layer: number;
+  /** Slug of this layer. */
+  slug: string;
+  inputs: AnalysisInput[];
+  /** Sequence of the model: the step read the state of the inputs after this edit. Absent if the step computed a layer from the shape of the model. */
+  sequence?: number;
+  /** Expression of the new layer. */
+  expression?: string;
+  recipe?: Recipe;
+  /** Condition of the statistics. */
+  where?: string;
+  statistics?: Statistics;
+}
+
+/** Result of an analysis. */
+export interface AnalysisReport {
+  name: string;
+  /** User who started the analysis. */
+  user: string;
+  /** Time when the first step began (RFC 3339). */
+  time: string;
+  /** In the order of the request. */
+  steps: AnalysisStepReport[];
+}
+
 /** Operation on the regions of a layer. */
 export type RegionOperation = "sieve" | "fill-holes" | "majority" | "border" | "open" | "close" | "pieces";
 
@@ -2072,6 +2182,7 @@ export interface Job {
   report?: TransferReport;
   cleanup?: CleanupReport;
   changes?: LayerChanges;
+  analysis?: AnalysisReport;
   file?: JobFile;
 }
 
@@ -2729,28 +2840,6 @@ export interface LayerCreate {
   recompute?: Recompute;
 }
 
-/** How the content of a layer was computed. A shape recipe that includes its default values, or a transfer (`kind` is transfer). */
-export interface Recipe {
-  kind: string;
-  radius_mm?: number;
-  distance_mm?: number;
-  normal_scale_mm?: number;
-  projection_scale_mm?: number;
-  registration_mm?: number;
-  latitude_deg?: number;
-  north_deg?: number;
-  from?: string;
-  to?: string;
-  tolerance_mm?: number;
-  max_angle?: number;
-  rays?: number;
-  absolute?: boolean;
-  model?: string;
-  layer?: string;
-  property?: string;
-  source?: string;
-}
-
 /** Vertex property with its file. */
 export interface VertexPropertyName {
   source: string;
@@ -3368,6 +3457,29 @@ export interface SelectionPicture {
 /** Additional part of the statistics, which takes longer to compute. */
 export type StatisticsPart = "pieces" | "perimeter" | "quantiles";
 
+/** Statistics of a layer in an analysis. */
+export interface AnalysisStatistics {
+  /** A layer of the model, or the slug of a layer of an earlier step. */
+  layer: LayerRef;
+  /** A condition over the layers. Only texels where it is true are counted. */
+  where?: string;
+  include?: StatisticsPart[];
+}
+
+/** Step of an analysis. */
+export interface AnalysisStep {
+  layer?: LayerCreate;
+  statistics?: AnalysisStatistics;
+}
+
+/** Analysis: steps that are computed one after another, as one job. */
+export interface Analysis {
+  /** Name of the analysis, which its layers and its report contain. */
+  name: string;
+  /** At least one step must compute a layer. */
+  steps: AnalysisStep[];
+}
+
 /** Paint the selection. */
 export interface SelectInto {
   layer: LayerRef;
@@ -3398,44 +3510,6 @@ export interface SelectRequest {
   into?: SelectInto;
   picture?: SelectionPicture;
   changed?: SelectChanged;
-}
-
-/** Bin of a histogram. Values from `from` (included) to `to` (excluded). The last bin includes `to`. */
-export interface HistogramBin {
-  from: number;
-  to: number;
-  texels: number;
-  area_m2: number;
-}
-
-/** Statistics of one key. */
-export interface KeyStatistics {
-  key: number;
-  texels: number;
-  area_m2: number;
-  centroid: Point3;
-  bounds: Bounds;
-  /** Number of connected areas of this key, if requested. */
-  pieces?: number;
-  /** Length of the borders of these areas along the surface, if requested. */
-  perimeter_m?: number;
-}
-
-/** Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values. */
-export interface Statistics {
-  texels: number;
-  area_m2: number;
-  min?: number;
-  max?: number;
-  mean?: number;
-  std?: number;
-  /** Number of connected areas, if requested. In layers of whole numbers, each area has a single value. */
-  pieces?: number;
-  /** Length of the borders of the valid areas along the surface, if requested. It includes open edges of the mesh, but not seams of the atlas. */
-  perimeter_m?: number;
-  quantiles?: Quantiles;
-  histogram: HistogramBin[];
-  keys: KeyStatistics[];
 }
 
 /** Statistics of layers in a selection. Keys are the slugs of layers. */

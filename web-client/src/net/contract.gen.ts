@@ -538,6 +538,25 @@ export interface paths {
         patch: operations["change_model"];
         trace?: never;
     };
+    "/models/{model}/analysis": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Compute several layers and statistics, one after another */
+        post: operations["run_analysis"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/comments": {
         parameters: {
             query?: never;
@@ -2615,6 +2634,18 @@ export interface components {
         ActivityList: wire.ActivityList;
         /** Agreement of two observers */
         Agreement: wire.Agreement;
+        /** Analysis: steps that are computed one after another, as one job */
+        Analysis: wire.Analysis;
+        /** Layer that a step of an analysis read */
+        AnalysisInput: wire.AnalysisInput;
+        /** Result of an analysis */
+        AnalysisReport: wire.AnalysisReport;
+        /** Statistics of a layer in an analysis */
+        AnalysisStatistics: wire.AnalysisStatistics;
+        /** Step of an analysis */
+        AnalysisStep: wire.AnalysisStep;
+        /** Result of a step of an analysis */
+        AnalysisStepReport: wire.AnalysisStepReport;
         /** Sequence or time */
         At: wire.At;
         /** Layout of the surface in the texture */
@@ -2835,6 +2866,8 @@ export interface components {
         Labels: wire.Labels;
         /** Layer */
         Layer: wire.Layer;
+        /** Analysis that computed a layer */
+        LayerAnalysis: wire.LayerAnalysis;
         /** Area of one key on one layer */
         LayerArea: wire.LayerArea;
         /**
@@ -4745,6 +4778,33 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Model"];
+                };
+            };
+        };
+    };
+    run_analysis: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Analysis"];
+            };
+        };
+        responses: {
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
                 };
             };
         };

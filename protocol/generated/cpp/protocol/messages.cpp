@@ -2640,6 +2640,74 @@ nlohmann::json to_json(const ObjectPatch& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, HistogramBin& value) {
+  read_member(json, "from", value.from);
+  read_member(json, "to", value.to);
+  read_member(json, "texels", value.texels);
+  read_member(json, "area_m2", value.area_m2);
+}
+
+nlohmann::json to_json(const HistogramBin& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "from", value.from);
+  write_member(json, "to", value.to);
+  write_member(json, "texels", value.texels);
+  write_member(json, "area_m2", value.area_m2);
+  return json;
+}
+
+void read(const nlohmann::json& json, KeyStatistics& value) {
+  read_member(json, "key", value.key);
+  read_member(json, "texels", value.texels);
+  read_member(json, "area_m2", value.area_m2);
+  read_member(json, "centroid", value.centroid);
+  read_member(json, "bounds", value.bounds);
+  read_optional_member(json, "pieces", value.pieces);
+  read_optional_member(json, "perimeter_m", value.perimeter_m);
+}
+
+nlohmann::json to_json(const KeyStatistics& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "key", value.key);
+  write_member(json, "texels", value.texels);
+  write_member(json, "area_m2", value.area_m2);
+  write_member(json, "centroid", value.centroid);
+  write_member(json, "bounds", value.bounds);
+  write_optional_member(json, "pieces", value.pieces);
+  write_optional_member(json, "perimeter_m", value.perimeter_m);
+  return json;
+}
+
+void read(const nlohmann::json& json, Statistics& value) {
+  read_member(json, "texels", value.texels);
+  read_member(json, "area_m2", value.area_m2);
+  read_optional_member(json, "min", value.min);
+  read_optional_member(json, "max", value.max);
+  read_optional_member(json, "mean", value.mean);
+  read_optional_member(json, "std", value.std);
+  read_optional_member(json, "pieces", value.pieces);
+  read_optional_member(json, "perimeter_m", value.perimeter_m);
+  read_optional_member(json, "quantiles", value.quantiles);
+  read_member(json, "histogram", value.histogram);
+  read_member(json, "keys", value.keys);
+}
+
+nlohmann::json to_json(const Statistics& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "texels", value.texels);
+  write_member(json, "area_m2", value.area_m2);
+  write_optional_member(json, "min", value.min);
+  write_optional_member(json, "max", value.max);
+  write_optional_member(json, "mean", value.mean);
+  write_optional_member(json, "std", value.std);
+  write_optional_member(json, "pieces", value.pieces);
+  write_optional_member(json, "perimeter_m", value.perimeter_m);
+  write_optional_member(json, "quantiles", value.quantiles);
+  write_member(json, "histogram", value.histogram);
+  write_member(json, "keys", value.keys);
+  return json;
+}
+
 void read(const nlohmann::json& json, CleanupReport& value) {
   read_member(json, "operation", value.operation);
   read_member(json, "applied", value.applied);
@@ -2858,6 +2926,7 @@ void read(const nlohmann::json& json, Job& value) {
   read_optional_member(json, "report", value.report);
   read_optional_member(json, "cleanup", value.cleanup);
   read_optional_member(json, "changes", value.changes);
+  read_optional_member(json, "analysis", value.analysis);
   read_optional_member(json, "file", value.file);
 }
 
@@ -2874,6 +2943,7 @@ nlohmann::json to_json(const Job& value) {
   write_optional_member(json, "report", value.report);
   write_optional_member(json, "cleanup", value.cleanup);
   write_optional_member(json, "changes", value.changes);
+  write_optional_member(json, "analysis", value.analysis);
   write_optional_member(json, "file", value.file);
   return json;
 }
@@ -4015,6 +4085,44 @@ Result<void> check(const SelectionPicture& value, const std::string& field) {
   return {};
 }
 
+void read(const nlohmann::json& json, AnalysisStatistics& value) {
+  read_member(json, "layer", value.layer);
+  read_optional_member(json, "where", value.where);
+  read_optional_member(json, "include", value.include);
+}
+
+nlohmann::json to_json(const AnalysisStatistics& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "layer", value.layer);
+  write_optional_member(json, "where", value.where);
+  write_optional_member(json, "include", value.include);
+  return json;
+}
+
+void read(const nlohmann::json& json, AnalysisStep& value) {
+  read_optional_member(json, "layer", value.layer);
+  read_optional_member(json, "statistics", value.statistics);
+}
+
+nlohmann::json to_json(const AnalysisStep& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "layer", value.layer);
+  write_optional_member(json, "statistics", value.statistics);
+  return json;
+}
+
+void read(const nlohmann::json& json, Analysis& value) {
+  read_member(json, "name", value.name);
+  read_member(json, "steps", value.steps);
+}
+
+nlohmann::json to_json(const Analysis& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_member(json, "steps", value.steps);
+  return json;
+}
+
 void read(const nlohmann::json& json, SelectInto& value) {
   read_member(json, "layer", value.layer);
   read_optional_member(json, "value", value.value);
@@ -4071,74 +4179,6 @@ Result<void> check(const SelectRequest& value, const std::string& field) {
   if (auto ok = value.within ? check(*value.within, join_field(field, "within")) : Result<void>{}; !ok) return ok;
   if (auto ok = value.picture ? check(*value.picture, join_field(field, "picture")) : Result<void>{}; !ok) return ok;
   return {};
-}
-
-void read(const nlohmann::json& json, HistogramBin& value) {
-  read_member(json, "from", value.from);
-  read_member(json, "to", value.to);
-  read_member(json, "texels", value.texels);
-  read_member(json, "area_m2", value.area_m2);
-}
-
-nlohmann::json to_json(const HistogramBin& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "from", value.from);
-  write_member(json, "to", value.to);
-  write_member(json, "texels", value.texels);
-  write_member(json, "area_m2", value.area_m2);
-  return json;
-}
-
-void read(const nlohmann::json& json, KeyStatistics& value) {
-  read_member(json, "key", value.key);
-  read_member(json, "texels", value.texels);
-  read_member(json, "area_m2", value.area_m2);
-  read_member(json, "centroid", value.centroid);
-  read_member(json, "bounds", value.bounds);
-  read_optional_member(json, "pieces", value.pieces);
-  read_optional_member(json, "perimeter_m", value.perimeter_m);
-}
-
-nlohmann::json to_json(const KeyStatistics& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "key", value.key);
-  write_member(json, "texels", value.texels);
-  write_member(json, "area_m2", value.area_m2);
-  write_member(json, "centroid", value.centroid);
-  write_member(json, "bounds", value.bounds);
-  write_optional_member(json, "pieces", value.pieces);
-  write_optional_member(json, "perimeter_m", value.perimeter_m);
-  return json;
-}
-
-void read(const nlohmann::json& json, Statistics& value) {
-  read_member(json, "texels", value.texels);
-  read_member(json, "area_m2", value.area_m2);
-  read_optional_member(json, "min", value.min);
-  read_optional_member(json, "max", value.max);
-  read_optional_member(json, "mean", value.mean);
-  read_optional_member(json, "std", value.std);
-  read_optional_member(json, "pieces", value.pieces);
-  read_optional_member(json, "perimeter_m", value.perimeter_m);
-  read_optional_member(json, "quantiles", value.quantiles);
-  read_member(json, "histogram", value.histogram);
-  read_member(json, "keys", value.keys);
-}
-
-nlohmann::json to_json(const Statistics& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "texels", value.texels);
-  write_member(json, "area_m2", value.area_m2);
-  write_optional_member(json, "min", value.min);
-  write_optional_member(json, "max", value.max);
-  write_optional_member(json, "mean", value.mean);
-  write_optional_member(json, "std", value.std);
-  write_optional_member(json, "pieces", value.pieces);
-  write_optional_member(json, "perimeter_m", value.perimeter_m);
-  write_optional_member(json, "quantiles", value.quantiles);
-  write_member(json, "histogram", value.histogram);
-  write_member(json, "keys", value.keys);
-  return json;
 }
 
 void read(const nlohmann::json& json, SelectResponse& value) {

@@ -76,6 +76,7 @@ enum class Schema {
   Resolution,
   Recompute,
   LayerBlend,
+  LayerAnalysis,
   Layer,
   Look,
   Highlight,
@@ -353,6 +354,12 @@ enum class Schema {
   WithinPart,
   Within,
   SelectionPicture,
+  Analysis,
+  AnalysisStep,
+  AnalysisStatistics,
+  AnalysisInput,
+  AnalysisStepReport,
+  AnalysisReport,
   StatisticsPart,
   SelectInto,
   SelectRequest,
@@ -403,7 +410,7 @@ enum class Schema {
   SavedSelectionPatch,
   SelectChanged,
 };
-constexpr int kSchemaCount = 377;
+constexpr int kSchemaCount = 384;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1893,6 +1900,60 @@ nlohmann::json to_json(const ObjectPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ObjectPatch> = Schema::ObjectPatch;
 
+// Bin of a histogram. Values from `from` (included) to `to` (excluded). The last bin includes `to`.
+struct HistogramBin {
+  double from = 0;
+  double to = 0;
+  int texels = 0;
+  double area_m2 = 0;
+  bool operator==(const HistogramBin&) const = default;
+};
+void read(const nlohmann::json& json, HistogramBin& value);
+nlohmann::json to_json(const HistogramBin& value);
+template <>
+inline constexpr Schema kSchemaOf<HistogramBin> = Schema::HistogramBin;
+
+// Statistics of one key.
+struct KeyStatistics {
+  double key = 0;
+  std::int64_t texels = 0;
+  double area_m2 = 0;
+  glm::dvec3 centroid{0};
+  Bounds bounds;
+  std::optional<std::int64_t> pieces;  // Number of connected areas of this key, if requested.
+  // Length of the borders of these areas along the surface, if requested.
+  std::optional<double> perimeter_m;
+  bool operator==(const KeyStatistics&) const = default;
+};
+void read(const nlohmann::json& json, KeyStatistics& value);
+nlohmann::json to_json(const KeyStatistics& value);
+template <>
+inline constexpr Schema kSchemaOf<KeyStatistics> = Schema::KeyStatistics;
+
+// Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values.
+struct Statistics {
+  std::int64_t texels = 0;
+  double area_m2 = 0;
+  std::optional<double> min;
+  std::optional<double> max;
+  std::optional<double> mean;
+  std::optional<double> std;
+  // Number of connected areas, if requested. In layers of whole numbers, each area has a single
+  // value.
+  std::optional<std::int64_t> pieces;
+  // Length of the borders of the valid areas along the surface, if requested. It includes open
+  // edges of the mesh, but not seams of the atlas.
+  std::optional<double> perimeter_m;
+  std::optional<Quantiles> quantiles;
+  std::vector<HistogramBin> histogram;
+  std::vector<KeyStatistics> keys;
+  bool operator==(const Statistics&) const = default;
+};
+void read(const nlohmann::json& json, Statistics& value);
+nlohmann::json to_json(const Statistics& value);
+template <>
+inline constexpr Schema kSchemaOf<Statistics> = Schema::Statistics;
+
 // Operation on the regions of a layer.
 enum class RegionOperation { sieve, fill_holes, majority, border, open, close, pieces };
 std::string_view name(RegionOperation value);
@@ -2107,6 +2168,7 @@ struct Job {
   std::optional<TransferReport> report;
   std::optional<CleanupReport> cleanup;
   std::optional<LayerChanges> changes;
+  std::optional<nlohmann::json> analysis;
   std::optional<JobFile> file;
   bool operator==(const Job&) const = default;
 };
@@ -3168,6 +3230,41 @@ std::string_view name(StatisticsPart value);
 void read(const nlohmann::json& json, StatisticsPart& value);
 nlohmann::json to_json(const StatisticsPart& value);
 
+// Statistics of a layer in an analysis.
+struct AnalysisStatistics {
+  LayerRef layer;  // A layer of the model, or the slug of a layer of an earlier step.
+  // A condition over the layers. Only texels where it is true are counted.
+  std::optional<std::string> where;
+  std::optional<std::vector<StatisticsPart>> include;
+  bool operator==(const AnalysisStatistics&) const = default;
+};
+void read(const nlohmann::json& json, AnalysisStatistics& value);
+nlohmann::json to_json(const AnalysisStatistics& value);
+template <>
+inline constexpr Schema kSchemaOf<AnalysisStatistics> = Schema::AnalysisStatistics;
+
+// Step of an analysis.
+struct AnalysisStep {
+  std::optional<LayerCreate> layer;
+  std::optional<AnalysisStatistics> statistics;
+  bool operator==(const AnalysisStep&) const = default;
+};
+void read(const nlohmann::json& json, AnalysisStep& value);
+nlohmann::json to_json(const AnalysisStep& value);
+template <>
+inline constexpr Schema kSchemaOf<AnalysisStep> = Schema::AnalysisStep;
+
+// Analysis: steps that are computed one after another, as one job.
+struct Analysis {
+  std::string name;  // Name of the analysis, which its layers and its report contain.
+  std::vector<AnalysisStep> steps;  // At least one step must compute a layer.
+  bool operator==(const Analysis&) const = default;
+};
+void read(const nlohmann::json& json, Analysis& value);
+nlohmann::json to_json(const Analysis& value);
+template <>
+inline constexpr Schema kSchemaOf<Analysis> = Schema::Analysis;
+
 // Paint the selection.
 struct SelectInto {
   LayerRef layer;
@@ -3211,60 +3308,6 @@ nlohmann::json to_json(const SelectRequest& value);
 Result<void> check(const SelectRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<SelectRequest> = Schema::SelectRequest;
-
-// Bin of a histogram. Values from `from` (included) to `to` (excluded). The last bin includes `to`.
-struct HistogramBin {
-  double from = 0;
-  double to = 0;
-  int texels = 0;
-  double area_m2 = 0;
-  bool operator==(const HistogramBin&) const = default;
-};
-void read(const nlohmann::json& json, HistogramBin& value);
-nlohmann::json to_json(const HistogramBin& value);
-template <>
-inline constexpr Schema kSchemaOf<HistogramBin> = Schema::HistogramBin;
-
-// Statistics of one key.
-struct KeyStatistics {
-  double key = 0;
-  std::int64_t texels = 0;
-  double area_m2 = 0;
-  glm::dvec3 centroid{0};
-  Bounds bounds;
-  std::optional<std::int64_t> pieces;  // Number of connected areas of this key, if requested.
-  // Length of the borders of these areas along the surface, if requested.
-  std::optional<double> perimeter_m;
-  bool operator==(const KeyStatistics&) const = default;
-};
-void read(const nlohmann::json& json, KeyStatistics& value);
-nlohmann::json to_json(const KeyStatistics& value);
-template <>
-inline constexpr Schema kSchemaOf<KeyStatistics> = Schema::KeyStatistics;
-
-// Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values.
-struct Statistics {
-  std::int64_t texels = 0;
-  double area_m2 = 0;
-  std::optional<double> min;
-  std::optional<double> max;
-  std::optional<double> mean;
-  std::optional<double> std;
-  // Number of connected areas, if requested. In layers of whole numbers, each area has a single
-  // value.
-  std::optional<std::int64_t> pieces;
-  // Length of the borders of the valid areas along the surface, if requested. It includes open
-  // edges of the mesh, but not seams of the atlas.
-  std::optional<double> perimeter_m;
-  std::optional<Quantiles> quantiles;
-  std::vector<HistogramBin> histogram;
-  std::vector<KeyStatistics> keys;
-  bool operator==(const Statistics&) const = default;
-};
-void read(const nlohmann::json& json, Statistics& value);
-nlohmann::json to_json(const Statistics& value);
-template <>
-inline constexpr Schema kSchemaOf<Statistics> = Schema::Statistics;
 
 // Texels and area of a selection.
 struct SelectResponse {

@@ -35,11 +35,15 @@ jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& body) {
 
 }  // namespace
 
+Result<jobs::ShapeRecipe> checked_recipe(const RouteContext& context, const Request& request,
+                                         const Model& model, const protocol::ShapeRecipe& body) {
+  return app::check_recipe(context.store, recipe_of(body), model, request.principal->roles);
+}
+
 Result<Response> create_shape_layer(const RouteContext& context, JobIdempotency& book,
                                     const Request& request, const std::shared_ptr<room::Room>& room,
                                     const protocol::LayerCreate& body, Layer layer) {
-  auto recipe = STRATA_TRY(app::check_recipe(context.store, recipe_of(*body.compute), room->model(),
-                                             request.principal->roles));
+  auto recipe = STRATA_TRY(checked_recipe(context, request, room->model(), *body.compute));
   return start_layer_job(
       context, book, request, room,
       [&store = context.store, room, layer = std::move(layer), recipe = std::move(recipe),

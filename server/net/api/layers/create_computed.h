@@ -1,9 +1,15 @@
 #pragma once
 
+#include "jobs/shape_recipe.h"
 #include "net/api/layers/layer_jobs.h"
 #include "room/room.h"
 
 namespace strata::net {
+
+// Returns the recipe with its default values. Refuses (422 at a field of `compute`) a recipe that
+// cannot be computed for the model.
+Result<jobs::ShapeRecipe> checked_recipe(const RouteContext& context, const Request& request,
+                                         const Model& model, const protocol::ShapeRecipe& body);
 
 // POST …/layers with `compute`. Starts the job that computes the layer from the shape of the model.
 // Properties in the request (`layer`) have precedence over properties of the recipe.

@@ -2,7 +2,6 @@
 
 #include "app/edits.h"
 #include "domain/layers/layer.h"
-#include "jobs/job_queue.h"
 #include "net/api/addressed.h"
 #include "net/http/idempotency_store.h"
 #include "room/room.h"
@@ -36,7 +35,7 @@ Result<jobs::JobResult> run(room::Room& room, app::NewLayers& layers, const Make
 
 Result<Response> start_layer_job(const RouteContext& context, JobIdempotency& book,
                                  const Request& request, const std::shared_ptr<room::Room>& room,
-                                 MakeLayers make) {
+                                 MakeLayers make, jobs::JobKind kind) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto job = context.jobs.add(
@@ -49,22 +48,22 @@ Result<Response> start_layer_job(const RouteContext& context, JobIdempotency& bo
         if (!done) layers.take_back();
         return done;
       },
-      {}, jobs::JobKind::layers);
+      {}, kind);
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
   return job_response(context, *job);
 }
 
 Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& book,
-                                  const Request& request, const nlohmann::json& stored) {
+                                  const Request& request, const nlohmann::json& stored,
+                                  jobs::JobKind kind) {
   auto known = STRATA_TRY(book.find(request));
   if (known) return job_response(context, *known);
   jobs::JobResult result(stored.at("model").get<ModelId>());
   result.layers = stored.at("layers").get<std::vector<LayerId>>();
   result.report = stored.at("report");
   const auto model = STRATA_TRY(stored_model(context, request));
-  auto job = STRATA_TRY(
-      book.finished(request, model.project_id, std::move(result), jobs::JobKind::layers));
+  auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result), kind));
   return job_response(context, job);
 }
 

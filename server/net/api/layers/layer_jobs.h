@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/layers/new_layers.h"
+#include "jobs/job_queue.h"
 #include "net/api/route_help.h"
 #include "net/http/job_idempotency.h"
 #include "room/room.h"
@@ -17,9 +18,10 @@ using MakeLayers =
 // server.
 Result<Response> start_layer_job(const RouteContext& context, JobIdempotency& book,
                                  const Request& request, const std::shared_ptr<room::Room>& room,
-                                 MakeLayers make);
+                                 MakeLayers make, jobs::JobKind kind = jobs::JobKind::layers);
 // For `replay` of a route. Creates the response from the stored result of a job that succeeded.
 Result<Response> repeat_layer_job(const RouteContext& context, JobIdempotency& book,
-                                  const Request& request, const nlohmann::json& stored);
+                                  const Request& request, const nlohmann::json& stored,
+                                  jobs::JobKind kind = jobs::JobKind::layers);
 
 }  // namespace strata::net

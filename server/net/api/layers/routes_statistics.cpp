@@ -193,13 +193,7 @@ void select(const RouteContext& context, const Request& request, const Respond& 
     if (!changed) return respond(changed.error());
     selection->changed = std::move(*changed);
   }
-  room::StatisticsOptions options;
-  for (const auto part : select_request->include.value_or(std::vector<protocol::StatisticsPart>{}))
-    switch (part) {
-      case protocol::StatisticsPart::pieces: options.pieces = true; break;
-      case protocol::StatisticsPart::perimeter: options.perimeter = true; break;
-      case protocol::StatisticsPart::quantiles: options.quantiles = true; break;
-    }
+  auto options = statistics_options(select_request->include);
   if (const auto& picture = select_request->picture)
     options.seen = room::SeenGrid{picture->camera, picture->width, picture->height};
   std::optional<room::EditRequest> edit;

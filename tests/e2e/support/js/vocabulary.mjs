@@ -580,6 +580,22 @@ export const particulars = {
       expression: one("moisture * 2", "cracks + 1", "nothing + 1"),
     },
   }),
+  run_analysis: json({
+    by_schema: {
+      AnalysisStep: fc.oneof(
+        fc.record({
+          layer: fc.record({
+            name: fc.uuid(),
+            resolution: one(2048),
+            expression: one("moisture * 2", "cracks + 1", "nothing + 1"),
+          }),
+        }),
+        fc.record({
+          statistics: fc.record({ layer: one("cracks", "moisture", "nothing"), where: condition }),
+        }),
+      ),
+    },
+  }),
 };
 
 // Headers that a proxy or a script may add: folder names, tokens, tags.
