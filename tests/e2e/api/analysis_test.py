@@ -38,7 +38,7 @@ def statistics(server, layer, **query):
 
 
 def trash(server):
-    return server.ok("GET", "/projects/default/trash").json()["total"]
+    return server.ok("GET", "/projects/default/bin").json()["total"]
 
 
 @pytest.fixture(scope="module")
@@ -184,7 +184,7 @@ def test_all_steps_are_checked_before_the_first(server):
         # everyone would see what only curators may see
         (
             [
-                {"layer": {**good["layer"], "visibility": "curators"}},
+                {"layer": {**good["layer"], "visibility": "private"}},
                 {"layer": {"name": "L", "expression": "good + 1"}},
             ],
             "steps[1].layer.expression",
