@@ -181,8 +181,9 @@ function gradient(palette: Palette, unit: string): TemplateResult {
     <div class="legend-ticks">
       ${marks.map((mark, index) => {
         const share = (mark - palette.min) / span;
-        const edge = share < 0.04 ? "first" : share > 0.96 ? "last" : "";
         const shownUnit = unit && index === marks.length - 1 ? ` ${unit}` : "";
+        // With its unit, the last label is too long to be centered near the end.
+        const edge = share < 0.04 ? "first" : share > (shownUnit ? 0.85 : 0.96) ? "last" : "";
         return html`<span class=${edge} ${styled({ left: `${(share * 100).toFixed(2)}%` })}
           >${formatNumber(mark, 4)}${shownUnit}</span
         >`;
