@@ -2,7 +2,8 @@
 -- readable-from: 44
 
 -- Jobs that run several steps of an analysis. Programs that lack this migration can read these jobs,
--- too. They only show another message for a job that ended because the server restarted.
+-- too. They return the report of an analysis as `report`, and show another message for a job that
+-- ended because the server restarted. If they change the expression of a layer, it keeps its analysis.
 ALTER TABLE jobs
   DROP CONSTRAINT jobs_kind_check,
   ADD CONSTRAINT jobs_kind_check CHECK (kind IN ('import', 'layers', 'look', 'figure', 'regions', 'changes', 'analysis'));

@@ -21,7 +21,7 @@ using Measure = AnalysisStep::Measure;
 tl::unexpected<Error> slug_taken(const std::string& slug) {
   return fail(ErrorCode::conflict, "Slug already used",
               "The model or an earlier step has a layer with the slug " + slug +
-                  ", so other steps could not tell the layers apart. Choose another name or slug, "
+                  ", so the slug would not identify one layer. Choose another name or slug, "
                   "or delete that layer.",
               "name");
 }

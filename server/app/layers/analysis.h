@@ -50,8 +50,8 @@ struct Analysis {
 std::vector<Layer> layers_after(const room::Room& room, const Analysis& analysis);
 
 // Checks a step and adds it to the analysis. Refuses a layer whose slug the model or an earlier
-// step already uses (409), and what the step names and nobody has made (422). The error names a
-// member of the step, as in POST …/layers. Blocks.
+// step already uses (409), and an entity that the step names but that does not exist (422). The
+// error names a member of the step, as in POST …/layers. Blocks.
 Result<void> add_step(const Services& services, const room::Room& room, Role role,
                       Analysis& analysis, AnalysisStep step);
 

@@ -57,12 +57,14 @@ double diagonal_of(const mesh::SurfaceMap& map) {
   return glm::distance(glm::dvec3(lowest), glm::dvec3(highest));
 }
 
-tl::unexpected<Error> range_too_small(const mesh::SurfaceMap& map, std::size_t readings,
-                                      const std::string& field) {
+tl::unexpected<Error> range_too_small(double range, const mesh::SurfaceMap& map,
+                                      std::size_t readings, const std::string& field) {
+  // Narrow pieces have more cells than their area suggests.
+  constexpr double kMore = 1.25;
   const double texel = mean_texel_size(map);
   const double least = std::max(
-      kCoarsestCells * kLeastTexels * texel,
-      kCoarsestCells * std::sqrt(map.area_total / (kCellArea * double(max_cells(readings)))));
+      {kMore * range, kCoarsestCells * kLeastTexels * texel,
+       kCoarsestCells * std::sqrt(map.area_total / (kCellArea * double(max_cells(readings))))});
   return refuse("Range too small",
                 "With " + std::to_string(readings) +
                     " readings on this surface, choose a range of " + rounded(least, std::ceil) +
@@ -105,7 +107,7 @@ Result<SurfaceCells> cells_for(const std::vector<Reading>& readings, double rang
         make_surface_cells(map, graph, starts, spacing, max_cells(readings.size()), progress));
     if (cells) return std::move(*cells);
   }
-  return range_too_small(map, readings.size(), field);
+  return range_too_small(range, map, readings.size(), field);
 }
 
 // The means over spots as weights of cells.
@@ -114,11 +116,15 @@ class SpotWeights {
   SpotWeights(const SurfaceCells& cells, const mesh::SurfaceMap& map)
       : cells_(cells), map_(map), weights_(cells.count(), 0), is_touched_(cells.count(), false) {}
 
-  Eigen::SparseVector<double> of(const Reading& reading) {
+  // Fails when cancelled.
+  Result<Eigen::SparseVector<double>> of(const Reading& reading, const Progress& progress) {
     // Some texels have no area of their own, and a spot may consist of them.
     const double least_area = 1e-6 * cells_.spacing * cells_.spacing;
     double area = 0;
-    for (const std::uint32_t texel : reading.texels) {
+    constexpr std::size_t kTexelsAtOnce = 4096;
+    for (std::size_t i = 0; i < reading.texels.size(); ++i) {
+      if (i % kTexelsAtOnce == 0 && progress.cancelled()) return cancelled_problem();
+      const std::uint32_t texel = reading.texels[i];
       const double of_texel = std::max(double{map_.area[texel]}, least_area);
       area += of_texel;
       add(texel, of_texel);
@@ -233,15 +239,16 @@ Result<std::vector<double>> variances_of(const Covariances& covariances, const E
 }
 
 // Calls value_at(cell of the texel, its position) for each texel in a cell. Numbers that are not
-// finite in single precision become no value.
+// finite in single precision become no value. Fails when cancelled.
 template <class ValueAt>
-SurfaceValues values_of_texels(const SurfaceCells& cells, const mesh::SurfaceMap& map, int threads,
-                               ValueAt value_at) {
+Result<SurfaceValues> values_of_texels(const SurfaceCells& cells, const mesh::SurfaceMap& map,
+                                       const Progress& progress, int threads, ValueAt value_at) {
   constexpr std::size_t kSlotsAtOnce = 1024;
   const std::size_t slots = map.block_of_slot.size();
   SurfaceValues result{std::vector<std::uint32_t>(slots * 64), std::vector<std::uint64_t>(slots)};
   const std::size_t parts = (slots + kSlotsAtOnce - 1) / kSlotsAtOnce;
   mesh::parallel_for(threads, static_cast<int>(parts), [&](int part) {
+    if (progress.cancelled()) return;
     const std::size_t first = static_cast<std::size_t>(part) * kSlotsAtOnce;
     for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot)
       for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1) {
@@ -254,6 +261,7 @@ SurfaceValues values_of_texels(const SurfaceCells& cells, const mesh::SurfaceMap
         if (std::isfinite(value)) result.set(texel, {std::bit_cast<std::uint32_t>(value), true});
       }
   });
+  if (progress.cancelled()) return cancelled_problem();
   return result;
 }
 
@@ -265,10 +273,11 @@ std::vector<glm::dvec3> gradients_of(const SurfaceCells& cells, std::span<const 
   return gradients;
 }
 
-SurfaceValues means_at_texels(const SurfaceCells& cells, const mesh::SurfaceMap& map,
-                              std::span<const double> means, int threads) {
+Result<SurfaceValues> means_at_texels(const SurfaceCells& cells, const mesh::SurfaceMap& map,
+                                      std::span<const double> means, const Progress& progress,
+                                      int threads) {
   const auto gradients = gradients_of(cells, means);
-  return values_of_texels(cells, map, threads, [&](std::uint32_t own, glm::dvec3 at) {
+  return values_of_texels(cells, map, progress, threads, [&](std::uint32_t own, glm::dvec3 at) {
     double mean = 0;
     cells.for_each_weight(own, at, [&](std::uint32_t cell, double weight, glm::dvec3 offset) {
       mean += weight * (means[cell] + glm::dot(gradients[cell], offset));
@@ -278,10 +287,11 @@ SurfaceValues means_at_texels(const SurfaceCells& cells, const mesh::SurfaceMap&
 }
 
 // Variances between cells are within those of the cells, so that none is below 0.
-SurfaceValues errors_at_texels(const SurfaceCells& cells, const mesh::SurfaceMap& map,
-                               std::span<const double> variances, double sill, int threads) {
+Result<SurfaceValues> errors_at_texels(const SurfaceCells& cells, const mesh::SurfaceMap& map,
+                                       std::span<const double> variances, double sill,
+                                       const Progress& progress, int threads) {
   const auto gradients = gradients_of(cells, variances);
-  return values_of_texels(cells, map, threads, [&](std::uint32_t own, glm::dvec3 at) {
+  return values_of_texels(cells, map, progress, threads, [&](std::uint32_t own, glm::dvec3 at) {
     double variance = 0, lowest = variances[own], highest = lowest;
     cells.for_each_weight(own, at, [&](std::uint32_t cell, double weight, glm::dvec3 offset) {
       variance += weight * (variances[cell] + glm::dot(gradients[cell], offset));
@@ -312,13 +322,14 @@ Result<SurfaceValues> interpolated_values(Interpolated what, const SurfaceValues
   const MaternField matern = STRATA_TRY(MaternField::make(cells, range, progress, threads));
   SpotWeights weights(cells, map);
   std::vector<Eigen::SparseVector<double>> spots;
-  for (const Reading& reading : readings) spots.push_back(weights.of(reading));
+  for (const Reading& reading : readings)
+    spots.push_back(STRATA_TRY(weights.of(reading, progress)));
   const Covariances covariances =
       STRATA_TRY(find_covariances(matern, spots, cells.count(), progress, threads));
   const Estimate found = estimate(covariances.of_readings, readings);
   if (what == Interpolated::mean) {
     const Eigen::VectorXd means = (covariances.of_cells * found.weights).array() + found.mean;
-    return means_at_texels(cells, map, std::span(means.data(), cells.count()), threads);
+    return means_at_texels(cells, map, std::span(means.data(), cells.count()), progress, threads);
   }
   if (std::ranges::all_of(readings, [&](const Reading& reading) {
         return reading.value == readings.front().value;
@@ -328,7 +339,7 @@ Result<SurfaceValues> interpolated_values(Interpolated what, const SurfaceValues
                   "interpolation cannot be estimated.",
                   field);
   const auto variances = STRATA_TRY(variances_of(covariances, found, progress, threads));
-  return errors_at_texels(cells, map, variances, found.sill, threads);
+  return errors_at_texels(cells, map, variances, found.sill, progress, threads);
 }
 
 }  // namespace strata::query

@@ -47,7 +47,7 @@ class CellMaker {
         waiting_.pop_front();
         if (cells_.of_texel[texel] != kNoCell) continue;
         if (cells_.count() == max_cells) return false;
-        if (cells_.count() % 64 == 0 && progress.cancelled()) return cancelled_problem();
+        if (progress.cancelled()) return cancelled_problem();
         add_cell(texel);
       }
     }

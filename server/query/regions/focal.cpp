@@ -302,8 +302,11 @@ Result<Places> measure_places(const Input& input, double radius, const mesh::Tex
   for_each_place([&](double of_texel, double value, double) {
     squares += of_texel * (value - mean) * (value - mean);
   });
-  const double of_place = place_areas / area;
-  return Places{mean, std::sqrt(squares / area), area / of_place, of_place};
+  const double of_place = place_areas / area, deviation = std::sqrt(squares / area);
+  // Of equal values, only the mean is rounded.
+  constexpr double kRounding = 1e-6;
+  return Places{mean, deviation > kRounding * std::abs(mean) ? deviation : 0, area / of_place,
+                of_place};
 }
 
 Result<SurfaceValues> hot_spot_values(const Input& input, double radius,

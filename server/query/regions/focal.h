@@ -25,8 +25,8 @@ enum class Focal {
   // and Getis 1995), with equal weights within the radius. Their formula counts places, so its
   // scores grow with the number of texels. Here the places are discs with a quarter of the radius:
   // their mean area and the spread of their means stand for the size and the variance of a place.
-  // The score is then the same at each resolution. If values are independent over more than such a
-  // disc, the score has about a standard normal distribution.
+  // From a radius of 8 texels on, the score is then about the same at each resolution. If values
+  // are independent over more than such a disc, the score has about a standard normal distribution.
   hot_spot,
 };
 

@@ -358,6 +358,20 @@ TEST(HotSpots, are_the_same_at_other_resolutions_and_with_other_charts) {
   }
 }
 
+TEST(HotSpots, of_equal_values_are_0_despite_rounding) {
+  // The areas of the texels and their sums are rounded.
+  const test::Shape tube{
+      64, 64,
+      [](double s, double t) { return glm::dvec3(std::cos(5 * s), std::sin(5 * s), 3 * t); },
+      [](double s, double t) { return glm::dvec2(5 * s, 3 * t); }};
+  const Surface surface = test::cut_surface(tube, {2, 2}, 256);
+  const auto values = put(surface, [](std::uint32_t) { return std::optional(0.1f); });
+  const auto scores = compute(Focal::hot_spot, surface, values, 12 * mean_texel_size(surface.map));
+  ASSERT_TRUE(scores);
+  test::for_each_surface_texel(
+      surface.map, [&](std::uint32_t texel) { ASSERT_EQ(number_at(*scores, texel), 0); });
+}
+
 TEST(HotSpots, are_0_where_no_place_stands_out) {
   const Surface sheet = test::cut_sheet();
   const auto same = put(sheet, [](std::uint32_t) { return std::optional(3.0f); });

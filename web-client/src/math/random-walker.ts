@@ -5,7 +5,7 @@
 
 import type { Picture } from "./edge-costs";
 
-/** What is given for a pixel. */
+/** The side on which a pixel is known to be. */
 export const kUnknown = 0;
 export const kInside = 1;
 export const kOutside = 2;

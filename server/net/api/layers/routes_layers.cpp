@@ -99,6 +99,7 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& bod
   if (body.expression && body.expression->empty()) {
     if (!layer.formula) return {};
     layer.formula.reset();
+    layer.analysis.reset();
     layer.locked = body.locked.value_or(false);
     layer.edited_by_hand = true;
     return {};

@@ -12,6 +12,8 @@ import type { SharpFrame } from "./edge-snapper";
 export const kFitReach = 12;
 /** Outlines in larger rectangles of the frame stay as drawn. */
 export const kMostFitPixels = 4_000_000;
+/** Outlines with more pixels near them stay as drawn, because the page would not respond. */
+export const kMostUnknown = 500_000;
 
 // The reach is at most this share of the width of a long strip, so its middle stays inside.
 const kWidthShare = 0.35;
@@ -48,11 +50,14 @@ export function fittedOutline(
   const drawn = outline.map(([x, y]): Point => [x - box.x, y - box.y]);
   const given = insideOf(drawn, box);
   forgetNear(drawn, width, box, given);
-  if (!given.includes(kInside)) return asDrawn;
+  const unknown = given.reduce((count, kind) => count + Number(kind === kUnknown), 0);
+  if (!given.includes(kInside) || unknown > kMostUnknown) return asDrawn;
   const pixels = frame.read(box.x, box.y, box.width, box.height);
   const picture = { width: box.width, height: box.height, channels: 4 as const, pixels };
   const ring = mainRing(randomWalker(picture, given), box);
-  return ring ? simplified(ring).map(([x, y]) => [x + box.x, y + box.y]) : asDrawn;
+  const fitted = ring ? simplified(ring) : [];
+  // A row of single pixels can become a line.
+  return fitted.length >= 3 ? fitted.map(([x, y]) => [x + box.x, y + box.y]) : asDrawn;
 }
 
 /** Returns about the width of a long strip with the same area and border. */

@@ -202,6 +202,26 @@ describe("An outline drawn by hand", () => {
     expect(fittedOutline(frame, outline, kFitReach)).toEqual(outline);
   });
 
+  it("stays as drawn if only a row of pixels is inside", () => {
+    const frame = frameOf(300, 20, (_, y) => (Math.floor(y) === 3 ? 40 : 200));
+    const outline: Point[] = [
+      [0, 0.45],
+      [300, 0.45],
+      [300, 6.45],
+      [0, 6.45],
+    ];
+    const fitted = fittedOutline(frame, outline, kFitReach);
+    expect(fitted.length).toBeGreaterThanOrEqual(3);
+  });
+
+  it("stays as drawn if it has too many pixels near it", () => {
+    const frame = { ...frameOf(1990, 1990, () => 0), read: () => expect.fail("read") };
+    const comb: Point[] = [[0, 1989]];
+    for (let x = 5; x < 1985; x += 60) comb.push([x, 1900], [x, 20], [x + 30, 20], [x + 30, 1900]);
+    comb.push([1985, 1989]);
+    expect(fittedOutline(frame, comb, 24)).toEqual(comb);
+  });
+
   it("stays as drawn if it is too large, and nothing is read then", () => {
     const size = Math.ceil(Math.sqrt(kMostFitPixels)) + 10;
     const frame = { ...frameOf(size, size, () => 0), read: () => expect.fail("read") };
