@@ -141,7 +141,10 @@ test("a class has its name in the visitor's language", async () => {
   await button("Abspielen: Eine Restauratorin erzählt").waitFor();
   await button("Weiter").tap();
   await heading("Vierzehn Scherben").waitFor();
-  await button("pieces").tap();
+  await wait_for(async () => {
+    await button("pieces").tap(); // a tap may miss the button while the row of buttons moves
+    return (await button("pieces").getAttribute("aria-pressed")) === "true";
+  }, "the layer pieces");
   await live();
   const { x, y, width, height } = await page.locator("strata-kiosk-stage").boundingBox();
   await page.touchscreen.tap(x + width / 2, y + height / 2);
