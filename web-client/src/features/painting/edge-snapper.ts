@@ -8,17 +8,7 @@ import { costOfStraight, LeastCostPaths } from "../../math/least-cost-paths";
 import type { Point } from "../../net/stroke";
 import type { EdgeSnapping } from "../../tools/outline";
 import { fittedOutline, kFitReach } from "./outline-fitter";
-
-/** A frame in full quality that shows the current camera. */
-export interface SharpFrame {
-  number: number;
-  /** A number that only frames of the same camera have. */
-  camera: number;
-  width: number;
-  height: number;
-  /** Returns the pixels of a rectangle: red, green, blue and alpha. */
-  read(x: number, y: number, width: number, height: number): Uint8ClampedArray;
-}
+import type { SharpFrame } from "./sharp-frame";
 
 export interface EdgeSnapperHost {
   /** Returns null while the 3D view shows no such frame. */

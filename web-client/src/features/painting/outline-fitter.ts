@@ -6,7 +6,7 @@ import { contours } from "d3-contour";
 import { simplifyLine } from "../../domain/marks";
 import { kInside, kOutside, kUnknown, randomWalker } from "../../math/random-walker";
 import type { Point } from "../../net/stroke";
-import type { SharpFrame } from "./edge-snapper";
+import type { SharpFrame } from "./sharp-frame";
 
 /** The distance in CSS pixels by which an outline can move to an edge. */
 export const kFitReach = 12;

@@ -1,7 +1,17 @@
 // Reads the pixels of the frame that the 3D view shows.
 
 import type { FrameHeader } from "../../net/frame-header";
-import type { SharpFrame } from "./edge-snapper";
+
+/** A frame in full quality that shows the current camera. */
+export interface SharpFrame {
+  number: number;
+  /** A number that only frames of the same camera have. */
+  camera: number;
+  width: number;
+  height: number;
+  /** Returns the pixels of a rectangle: red, green, blue and alpha. */
+  read(x: number, y: number, width: number, height: number): Uint8ClampedArray;
+}
 
 /** The canvas of the 3D view, and the header of the last complete frame on it. */
 export interface ShownFrame {

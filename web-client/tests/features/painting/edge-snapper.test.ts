@@ -1,11 +1,7 @@
 import { beforeEach, describe, expect, it } from "vitest";
 import type { Point } from "../../../src/net/stroke";
-import {
-  EdgeSnapper,
-  kPartSize,
-  kSnapReach,
-  type SharpFrame,
-} from "../../../src/features/painting/edge-snapper";
+import { EdgeSnapper, kPartSize, kSnapReach } from "../../../src/features/painting/edge-snapper";
+import type { SharpFrame } from "../../../src/features/painting/sharp-frame";
 
 let frame: SharpFrame | null;
 let view: { width: number; height: number };

@@ -1,6 +1,6 @@
 import fc from "fast-check";
 import { describe, expect, it } from "vitest";
-import type { SharpFrame } from "../../../src/features/painting/edge-snapper";
+import type { SharpFrame } from "../../../src/features/painting/sharp-frame";
 import {
   fittedOutline,
   kFitReach,
