@@ -579,7 +579,7 @@ class Parser {
     return function;
   }
 
-  // A layer stands for the places where it has a value.
+  // A layer in place of a condition is true where the layer has a value.
   Expression source(Expression expression, std::size_t at) {
     if (expression.op == Op::layer) {
       expression.op = Op::valid;

@@ -34,7 +34,7 @@ enum class Interpolated {
 // The model (kriging with an unknown constant mean):
 //   reading = mean of the surface + mean of a field over the spot + noise
 // The field is that of matern_field.h. Its variance, the sill, is constant. The variance of the
-// noise is kNoiseShare of the sill. It stands for the inexactness of a reading, and two readings
+// noise is kNoiseShare of the sill. It is the inexactness of a reading, so two readings
 // at one place may differ. The mean is estimated by generalized least squares, and the sill by
 // restricted maximum likelihood, which has a closed form for a given range and share of noise.
 // Both come from all readings together. The error is that of the value without noise and includes

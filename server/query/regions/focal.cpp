@@ -279,10 +279,11 @@ class HotSpotDiscs {
   const Places& places_;
 };
 
-Result<Places> measure_places(const Input& input, double radius, const mesh::TexelGraph& graph,
-                              Progress& progress, int threads) {
-  const auto means =
-      STRATA_TRY(part_values<MeanPart>(input, radius, graph, progress, threads, {0, 0.15}));
+Result<Places> measure_places(const Input& input, const RowParts<MeanPart>& parts, double radius,
+                              const mesh::TexelGraph& graph, Progress& progress, int threads) {
+  const auto means = STRATA_TRY(
+      compute_discs(input, progress, threads,
+                    [&] { return PartDiscs<MeanPart>(input, parts, graph, radius); }, {0, 0.15}));
   const auto areas =
       STRATA_TRY(part_values<AreaPart>(input, radius, graph, progress, threads, {0.15, 0.3}));
   double area = 0, weighted = 0, squares = 0, place_areas = 0;
@@ -313,9 +314,9 @@ Result<SurfaceValues> hot_spot_values(const Input& input, double radius,
                                       const mesh::TexelGraph& graph, Progress& progress,
                                       int threads) {
   constexpr double kPlaceRadius = 0.25;  // of the radius
-  const Places places =
-      STRATA_TRY(measure_places(input, kPlaceRadius * radius, graph, progress, threads));
   const RowParts<MeanPart> parts(input, threads);
+  const Places places =
+      STRATA_TRY(measure_places(input, parts, kPlaceRadius * radius, graph, progress, threads));
   return compute_discs(input, progress, threads,
                        [&] { return HotSpotDiscs(input, parts, graph, radius, places); }, {0.3, 1});
 }
