@@ -8,18 +8,9 @@ import {
   kStraight,
   LeastCostPaths,
 } from "../../src/math/least-cost-paths";
+import { noise } from "../pictures";
 
 type Pixel = [number, number];
-
-/** Returns normally distributed numbers, always the same ones. */
-function noise(deviation: number): () => number {
-  let state = 12345;
-  const uniform = (): number => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return (state + 0.5) / 2 ** 32;
-  };
-  return () => deviation * Math.sqrt(-2 * Math.log(uniform())) * Math.cos(2 * Math.PI * uniform());
-}
 
 /** Makes a gray picture. `valueAt` gets the middle of each pixel. */
 function gray(size: number, valueAt: (x: number, y: number) => number): Picture {

@@ -2,6 +2,7 @@ import { beforeEach, describe, expect, it } from "vitest";
 import type { Point } from "../../../src/net/stroke";
 import { EdgeSnapper, kPartSize, kSnapReach } from "../../../src/features/painting/edge-snapper";
 import type { SharpFrame } from "../../../src/features/painting/sharp-frame";
+import { frameOf as grayFrame } from "../../pictures";
 
 let frame: SharpFrame | null;
 let view: { width: number; height: number };
@@ -10,28 +11,12 @@ let now: number;
 let reads: { x: number; y: number; width: number; height: number }[];
 let snapper: EdgeSnapper;
 
-/** Makes a gray frame. `valueAt` gets the middle of each pixel. */
+/** Makes a gray frame that records its reads. `valueAt` gets the middle of each pixel. */
 const frameOf = (
   width: number,
   height: number,
   valueAt: (x: number, y: number) => number,
-): SharpFrame => ({
-  number: 1,
-  camera: 1,
-  width,
-  height,
-  read: (x, y, partWidth, partHeight) => {
-    reads.push({ x, y, width: partWidth, height: partHeight });
-    const pixels = new Uint8ClampedArray(4 * partWidth * partHeight);
-    for (let at = 0; at < partWidth * partHeight; ++at)
-      pixels.fill(
-        valueAt(x + (at % partWidth) + 0.5, y + Math.floor(at / partWidth) + 0.5),
-        4 * at,
-        4 * at + 4,
-      );
-    return pixels;
-  },
-});
+): SharpFrame => grayFrame(width, height, valueAt, (part) => reads.push(part));
 const kMiddle = 80;
 const kRadius = 50;
 const off = ([x, y]: Point): number => Math.abs(Math.hypot(x - kMiddle, y - kMiddle) - kRadius);
