@@ -13,6 +13,7 @@ Command add_frames(CLI::App& app);
 Command add_import(CLI::App& app);
 Command add_memory(CLI::App& app);
 Command add_nearest(CLI::App& app);
+Command add_operators(CLI::App& app);
 Command add_query(CLI::App& app);
 Command add_sheet(CLI::App& app);
 Command add_stream(CLI::App& app);

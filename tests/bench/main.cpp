@@ -10,7 +10,8 @@ int main(int argc, char** argv) {
       {"atlas", strata::bench::add_atlas(app)},     {"distance", strata::bench::add_distance(app)},
       {"edit", strata::bench::add_edit(app)},       {"frames", strata::bench::add_frames(app)},
       {"import", strata::bench::add_import(app)},   {"memory", strata::bench::add_memory(app)},
-      {"nearest", strata::bench::add_nearest(app)}, {"query", strata::bench::add_query(app)},
+      {"nearest", strata::bench::add_nearest(app)}, {"operators", strata::bench::add_operators(app)},
+      {"query", strata::bench::add_query(app)},
       {"sheet", strata::bench::add_sheet(app)},     {"stream", strata::bench::add_stream(app)},
       {"viewer", strata::bench::add_viewer(app)}};
   try {
