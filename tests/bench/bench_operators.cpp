@@ -1,6 +1,8 @@
 // Measures the operators on the values of a layer: seconds, processor seconds and peak memory of
 // each, for meshes and resolutions. The values are waves through space, so they do not depend on
 // the atlas. Needs no database and no GPU.
+#include <malloc.h>
+
 #include <array>
 #include <bit>
 #include <cmath>
@@ -119,8 +121,8 @@ std::vector<Operator> operators() {
   const auto focal = [=](query::Focal statistic, bool of_classes, double share) {
     return [=](const Subject& on, Progress& progress) {
       must(query::focal_values(statistic, of_classes ? on.classes : on.numbers,
-                               of_classes ? ValueType::u32 : ValueType::f32,
-                               share * on.side, on.map, on.graph, "radius", progress, threads));
+                               of_classes ? ValueType::u32 : ValueType::f32, share * on.side,
+                               on.map, on.graph, "radius", progress, threads));
     };
   };
   const auto distance = [=](double share) {
@@ -174,8 +176,8 @@ std::vector<Operator> operators() {
        }},
       {"pieces",
        [=](const Subject& on, Progress& progress) {
-         must(query::find_pieces(on.classes, {{}, 0, 100'000}, on.map, on.graph, progress,
-                                 threads));
+         must(
+             query::find_pieces(on.classes, {{}, 0, 100'000}, on.map, on.graph, progress, threads));
        }},
       {"mean, 0.2 %", focal(query::Focal::mean, false, 0.002)},
       {"mean, 0.5 %", focal(query::Focal::mean, false, 0.005)},
@@ -190,6 +192,7 @@ std::vector<Operator> operators() {
 nlohmann::json measure(const Operator& each, const Subject& subject) {
   StepWatch watch;
   Progress progress;
+  malloc_trim(0);  // otherwise the memory of the operator before hides that of this one
   const double memory_before = memory_mib();
   watch.run(each.name, progress, [&] {
     each.work(subject, progress);

@@ -76,21 +76,26 @@ struct Input {
   }
 };
 
-// The parts of the rows of 8 texels in each block. Prefix sums would be faster, but one very large
-// value would take the precision of all values to its right.
+// The parts of each block and of its rows of 8 texels. Prefix sums would be faster, but one very
+// large value would take the precision of all values to its right.
 template <class Part>
 class RowParts {
  public:
   explicit RowParts(const Input& input, int threads)
-      : input_(input), parts_(input.map.block_of_slot.size() * kBlockSize) {
+      : input_(input),
+        parts_(input.map.block_of_slot.size() * kBlockSize),
+        of_block_(input.map.block_of_slot.size()) {
     constexpr std::size_t kSlotsAtOnce = 4096;
     const std::size_t slots = input.map.block_of_slot.size();
     mesh::parallel_for(
         threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int number) {
           const std::size_t first = static_cast<std::size_t>(number) * kSlotsAtOnce;
-          for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot)
+          for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot) {
             for (std::uint32_t i = 0; i < 64; ++i)
               add_texel(static_cast<std::uint32_t>(slot * 64) + i, parts_[slot * 8 + i / 8]);
+            for (std::size_t row = slot * 8; row < slot * 8 + 8; ++row)
+              of_block_[slot].add(parts_[row]);
+          }
         });
   }
 
@@ -117,16 +122,43 @@ class RowParts {
     }
   }
 
+  // Adds the texels of a slot with these bits.
+  void add_texels(std::uint32_t slot, std::uint64_t bits, Part& part) const {
+    const std::uint64_t valid = input_.values.valid[slot];
+    if ((valid & ~bits) == 0) {
+      part.add(of_block_[slot]);
+      return;
+    }
+    for (std::uint32_t row = 0; row < 8; ++row) {
+      const std::uint64_t of_row = std::uint64_t{0xff} << 8 * row;
+      if ((valid & of_row & ~bits) == 0) {
+        part.add(parts_[slot * 8 + row]);
+        continue;
+      }
+      for (std::uint64_t left = valid & of_row & bits; left != 0; left &= left - 1)
+        add_texel(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left)), part);
+    }
+  }
+
  private:
   const Input& input_;
-  std::vector<Part> parts_;
+  std::vector<Part> parts_, of_block_;
 };
 
-// Adds the texels of a disc with add_texel(texel) and add_chord(y, x0, x1). `clear` takes back what
-// was added.
-template <class Chord, class Texel, class Clear>
+// Returns the area of the texels of a slot with these bits.
+double area_of(const mesh::SurfaceMap& map, std::uint32_t slot, std::uint64_t bits) {
+  if (bits == map.surface_mask[slot]) return map.sums_of_slot[slot].area;
+  double area = 0;
+  for (std::uint64_t left = bits; left != 0; left &= left - 1)
+    area += double{map.area[slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left))]};
+  return area;
+}
+
+// Adds the texels of a disc with add_texels(slot, bits) and add_chord(y, x0, x1). `clear` takes
+// back what was added.
+template <class Chord, class Texels, class Clear>
 void add_disc(const Input& input, TexelDiscs& discs, double disc_area, std::uint32_t texel,
-              Chord add_chord, Texel add_texel, Clear clear) {
+              Chord add_chord, Texels add_texels, Clear clear) {
   clear();
   if (discs.for_each_chord(texel, [&](int y, int x0, int x1) {
         if (!input.rows.are_connected(y, x0, x1)) return false;
@@ -136,15 +168,15 @@ void add_disc(const Input& input, TexelDiscs& discs, double disc_area, std::uint
     return;
   clear();
   double area = 0;
-  discs.for_each_in_ball(texel, [&](std::uint32_t other) {
-    area += double{input.map.area[other]};
-    add_texel(other);
+  discs.balls().for_each_block(texel, [&](std::uint32_t slot, std::uint64_t bits) {
+    area += area_of(input.map, slot, bits);
+    add_texels(slot, bits);
   });
   // A ball with more surface than a disc reaches through a fold.
   constexpr double kFolded = 1.1;
   if (area <= kFolded * disc_area) return;
   clear();
-  discs.for_each_on_paths(texel, add_texel);
+  discs.balls().for_each_block_on_paths(texel, add_texels);
 }
 
 // Returns the area of the texels in a flat disc, with some more at its rim.
@@ -168,7 +200,8 @@ class PartDiscs {
     add_disc(
         input_, discs_, disc_area_, texel,
         [&](int y, int x0, int x1) { parts_.add_chord(y, x0, x1, part); },
-        [&](std::uint32_t other) { parts_.add_texel(other, part); }, [&] { part = {}; });
+        [&](std::uint32_t slot, std::uint64_t bits) { parts_.add_texels(slot, bits, part); },
+        [&] { part = {}; });
     return part;
   }
   std::optional<float> at(std::uint32_t texel) { return part_at(texel).result(); }
@@ -193,8 +226,11 @@ class VarietyDiscs {
             if (value.valid) found_.add(value, area);
           });
         },
-        [&](std::uint32_t other) {
-          if (const TexelValue value = input_.values.of(other); value.valid) found_.add(value, 1);
+        [&](std::uint32_t slot, std::uint64_t bits) {
+          for (std::uint64_t left = bits & input_.values.valid[slot]; left != 0; left &= left - 1)
+            found_.add(
+                input_.values.of(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left))),
+                1);
         },
         [&] { found_.clear(); });
     return found_.count() == 0 ? std::nullopt : std::optional(static_cast<float>(found_.count()));

@@ -45,8 +45,9 @@ double max_focal_radius(const mesh::SurfaceMap& map);
 // Hot spots also need the values of all other places: where they are equal, or all within the
 // radius, the score is 0.
 //
-// Sums of 8 texels make the time per texel proportional to the radius. It grows with the square of
-// the radius near seams, and for the variety of layers with many values. Needs about 24 bytes of
+// Sums of blocks and of their rows make the time per texel proportional to the radius. It is about
+// three times as long near seams, and a hundred times as long at folds. It grows with the square of
+// the radius at folds, and for the variety of layers with many values. Needs about 24 bytes of
 // memory per texel of the map. The result does not depend on the number of threads. Fails when
 // cancelled, and with an `invalid` error at `field` for a radius above max_focal_radius. The radius
 // must not be negative.

@@ -24,8 +24,10 @@ TexelDiscs::TexelDiscs(const mesh::SurfaceMap& map, const mesh::TexelGraph& grap
       graph_(graph),
       radius_(radius * kRim),
       texels_in_radius_(radius / mean_texel_size(map)),
-      lengths_(static_cast<std::size_t>(
-          std::ceil(std::numbers::pi * texels_in_radius_ * texels_in_radius_))) {}
+      // At places where texels are much smaller than the mean
+      balls_(map, graph, radius_,
+             256 + static_cast<std::size_t>(4 * std::numbers::pi * texels_in_radius_ *
+                                            texels_in_radius_)) {}
 
 std::uint32_t TexelDiscs::walk(std::uint32_t texel, Way way, int steps) const {
   for (int i = 0; i < steps && texel != kNoNeighbour; ++i)

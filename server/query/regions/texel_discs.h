@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mesh/texels/texel_graph.h"
+#include "query/regions/texel_balls.h"
 
 namespace strata::query {
 
@@ -30,42 +31,6 @@ inline std::uint32_t texel_in_atlas(const mesh::SurfaceMap& map, int x, int y) {
   return (map.surface_mask[slot] >> i & 1u) != 0 ? slot * 64 + static_cast<std::uint32_t>(i)
                                                  : mesh::kNoNeighbour;
 }
-
-// A set of texels with a length for each: a hash table with a stamp per set, so that it need not be
-// cleared.
-class TexelLengths {
- public:
-  // The set holds at most about four times the expected number of texels.
-  explicit TexelLengths(std::size_t expected)
-      : entries_(std::bit_ceil(std::max<std::size_t>(8 * expected, 1024))) {}
-  void clear() {
-    ++stamp_;
-    count_ = 0;
-  }
-  bool full() const { return count_ >= entries_.size() / 2; }
-  // Returns the length of the texel, and whether the texel is new.
-  std::pair<float&, bool> add(std::uint32_t texel) {
-    const std::size_t mask = entries_.size() - 1;
-    std::size_t at = texel * 0x9e3779b1u & mask;
-    while (entries_[at].stamp == stamp_) {
-      if (entries_[at].texel == texel) return {entries_[at].length, false};
-      at = (at + 1) & mask;
-    }
-    entries_[at] = {texel, stamp_, 0};
-    ++count_;
-    return {entries_[at].length, true};
-  }
-
- private:
-  struct Entry {
-    std::uint32_t texel = 0;
-    std::uint32_t stamp = 0;
-    float length = 0;
-  };
-  std::vector<Entry> entries_;
-  std::uint32_t stamp_ = 1;
-  std::size_t count_ = 0;
-};
 
 // The texels within a radius of a texel, along the surface. Use each object on one thread.
 //
@@ -106,58 +71,11 @@ class TexelDiscs {
     return true;
   }
 
-  // Calls visit(texel) for the connected texels in a ball. Their distances are straight through
-  // space.
-  template <class Visit>
-  void for_each_in_ball(std::uint32_t start, Visit&& visit) {
-    begin(start);
-    const glm::dvec3 center = place(start);
-    for (std::size_t next = 0; next < open_.size(); ++next) {
-      const std::uint32_t texel = open_[next].first;
-      visit(texel);
-      mesh::for_each_neighbour(map_, graph_, texel, [&](std::uint32_t other) {
-        if (lengths_.full() || !lengths_.add(other).second) return;
-        if (glm::distance(place(other), center) <= radius_) open_.emplace_back(other, 0.0f);
-      });
-    }
-  }
-
-  // Like for_each_in_ball, but does not reach the other side of a fold or of a thin wall before the
-  // path around it is short enough. Paths have steps like those of a king in chess, so at a fold
-  // the radius is up to 8 % too large. Takes about five times as long.
-  template <class Visit>
-  void for_each_on_paths(std::uint32_t start, Visit&& visit) {
-    begin(start);
-    visit(start);
-    const glm::dvec3 center = place(start);
-    for (std::size_t next = 0; next < open_.size(); ++next) {
-      const auto [texel, length] = open_[next];
-      if (lengths_.add(texel).first < length) continue;
-      const glm::dvec3 from = place(texel);
-      const auto step_to = [&, length = length](std::uint32_t other) {
-        const glm::dvec3 to = place(other);
-        const auto path = length + static_cast<float>(glm::distance(from, to));
-        if (path > kLongestPath * radius_ || glm::distance(to, center) > radius_ || lengths_.full())
-          return;
-        const auto [known, is_new] = lengths_.add(other);
-        if (!is_new && path >= known * kLeastGain) return;
-        known = path;
-        open_.emplace_back(other, path);
-        if (is_new) visit(other);
-      };
-      // Two steps reach the diagonal neighbors, also across a seam.
-      mesh::for_each_neighbour(map_, graph_, texel, [&](std::uint32_t beside) {
-        step_to(beside);
-        mesh::for_each_neighbour(map_, graph_, beside, step_to);
-      });
-    }
-  }
+  // The connected texels in a ball, for places where for_each_chord returns false.
+  TexelBalls& balls() { return balls_; }
 
  private:
   static constexpr int kMaxRows = 4 * static_cast<int>(kMaxDiscTexels);
-  // The greatest ratio of a path of steps to 8 neighbors and a straight line.
-  static constexpr double kLongestPath = 1.0824;
-  static constexpr float kLeastGain = 0.999f;
   struct Chord {
     int first, last;
   };
@@ -176,11 +94,6 @@ class TexelDiscs {
   glm::dvec3 place(std::uint32_t texel) const {
     return glm::dvec3(map_.position(texel / 64, static_cast<int>(texel % 64)));
   }
-  void begin(std::uint32_t start) {
-    lengths_.clear();
-    lengths_.add(start);
-    open_.assign(1, {start, 0.0f});
-  }
   std::uint32_t walk(std::uint32_t texel, mesh::Way way, int steps) const;
   std::optional<Ellipse> ellipse_around(std::uint32_t texel) const;
   bool are_connected(const Chord& a, const Chord& b, int y_of_a, int y_of_b) const;
@@ -188,8 +101,7 @@ class TexelDiscs {
   const mesh::SurfaceMap& map_;
   const mesh::TexelGraph& graph_;
   const double radius_, texels_in_radius_;
-  TexelLengths lengths_;
-  std::vector<std::pair<std::uint32_t, float>> open_;
+  TexelBalls balls_;
 };
 
 }  // namespace strata::query
