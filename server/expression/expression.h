@@ -61,6 +61,8 @@ struct Expression {
     focal_max,      //
     focal_variety,  // the number of different values
     hot_spot,       // the z-score of a number at the texels around
+    watershed,      // the number of the basin of a number, of basins at least `number` deep
+    run_off,        // water that passes, from the rain on each place
     // Along the surface, from the readings of a number (query/interpolation/interpolate) and the
     // range `number`.
     interpolated,         // the expected value

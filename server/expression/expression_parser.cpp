@@ -457,7 +457,7 @@ class Parser {
     if (is("interval")) return interval();
     if (is("within")) return within();
     for (const NamedSurfaceFunction& each : kSurfaceFunctions)
-      if (is(each.name)) return surface_function(each.op, each.needs_limit);
+      if (is(each.name)) return surface_function(each.op, each.limit);
     for (const Operator& each : operators()) {
       if (!is(each.name)) continue;
       switch (each.form) {
@@ -553,10 +553,10 @@ class Parser {
 
   Expression within() {
     const auto at = token_.at;
-    return make(Op::known, at, surface_function(Op::distance, true));
+    return make(Op::known, at, surface_function(Op::distance, NamedSurfaceFunction::Limit::needed));
   }
 
-  Expression surface_function(Op op, bool needs_limit) {
+  Expression surface_function(Op op, NamedSurfaceFunction::Limit needs) {
     const auto at = token_.at;
     const auto name_end = at_;
     if (names_ == Names::columns)
@@ -572,8 +572,9 @@ class Parser {
         op == Op::distance ? source(std::move(part), part_at) : numeric(std::move(part), part_at);
     Expression function = make(op, at, std::move(part));
     function.number = std::numeric_limits<double>::infinity();
-    if (needs_limit && !is(",")) refuse("Expected ',' and a distance");
-    if (take(",")) function.number = limit();
+    if (needs == NamedSurfaceFunction::Limit::needed && !is(","))
+      refuse(op == Op::watershed ? "Expected ',' and a height" : "Expected ',' and a distance");
+    if (needs != NamedSurfaceFunction::Limit::none && take(",")) function.number = limit();
     expect(")");
     function.position = position(at, name_end);
     return function;
@@ -590,7 +591,7 @@ class Parser {
 
   double limit() {
     if (token_.kind != Token::Kind::number) {
-      refuse("Write the distance as a number, such as 20");
+      refuse("Write the distance or height as a number, such as 20");
       return 0;
     }
     const double number = token_.number;

@@ -36,7 +36,7 @@ enum class Names { layers, columns };
 //   surface, only in computed layers; a layer in place of the condition means valid(layer);
 //   within(c, d) is the same as distance(c, d) is not null
 //   focal_mean, focal_min, focal_max, focal_variety, hot_spot of (number, radius), interpolated and
-//   interpolation_error of (number, range): likewise
+//   interpolation_error of (number, range), watershed(number, height), run_off(number): likewise
 //
 // Words are case-insensitive. Layers and columns are named by their slugs. `layer.column` is a
 // column of the record whose key the layer holds. `column.column` is a column of the record that a

@@ -18,18 +18,21 @@ constexpr std::size_t kMaxSurfaceFunctions = 8;  // in one formula
 struct NamedSurfaceFunction {
   Expression::Op op;
   std::string_view name;
-  bool needs_limit = false;  // the second argument
+  enum class Limit { none, optional, needed } limit = Limit::needed;  // the second argument
 };
 inline constexpr std::array kSurfaceFunctions{
-    NamedSurfaceFunction{Expression::Op::distance, "distance"},
-    NamedSurfaceFunction{Expression::Op::nearest, "nearest"},
-    NamedSurfaceFunction{Expression::Op::focal_mean, "focal_mean", true},
-    NamedSurfaceFunction{Expression::Op::focal_min, "focal_min", true},
-    NamedSurfaceFunction{Expression::Op::focal_max, "focal_max", true},
-    NamedSurfaceFunction{Expression::Op::focal_variety, "focal_variety", true},
-    NamedSurfaceFunction{Expression::Op::hot_spot, "hot_spot", true},
-    NamedSurfaceFunction{Expression::Op::interpolated, "interpolated", true},
-    NamedSurfaceFunction{Expression::Op::interpolation_error, "interpolation_error", true}};
+    NamedSurfaceFunction{Expression::Op::distance, "distance",
+                         NamedSurfaceFunction::Limit::optional},
+    NamedSurfaceFunction{Expression::Op::nearest, "nearest", NamedSurfaceFunction::Limit::optional},
+    NamedSurfaceFunction{Expression::Op::focal_mean, "focal_mean"},
+    NamedSurfaceFunction{Expression::Op::focal_min, "focal_min"},
+    NamedSurfaceFunction{Expression::Op::focal_max, "focal_max"},
+    NamedSurfaceFunction{Expression::Op::focal_variety, "focal_variety"},
+    NamedSurfaceFunction{Expression::Op::hot_spot, "hot_spot"},
+    NamedSurfaceFunction{Expression::Op::watershed, "watershed"},
+    NamedSurfaceFunction{Expression::Op::run_off, "run_off", NamedSurfaceFunction::Limit::none},
+    NamedSurfaceFunction{Expression::Op::interpolated, "interpolated"},
+    NamedSurfaceFunction{Expression::Op::interpolation_error, "interpolation_error"}};
 
 // The slugs of the layers that take the place of functions begin with this text.
 inline constexpr std::string_view kSurfaceFunctionPrefix = "surface.function.";

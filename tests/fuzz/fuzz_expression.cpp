@@ -80,6 +80,8 @@ std::string text_of(const Expression& expression) {
     case Op::focal_max: return with_limit("focal_max", expression);
     case Op::focal_variety: return with_limit("focal_variety", expression);
     case Op::hot_spot: return with_limit("hot_spot", expression);
+    case Op::watershed: return with_limit("watershed", expression);
+    case Op::run_off: return call("run_off", expression);
     case Op::interpolated: return with_limit("interpolated", expression);
     case Op::interpolation_error: return with_limit("interpolation_error", expression);
     case Op::add: return joined("+", expression);

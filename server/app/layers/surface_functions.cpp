@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "domain/scene/model.h"
+#include "domain/scene/up.h"
 #include "mesh/parallel.h"
 #include "mesh/surface/geometry.h"
 #include "mesh/texels/texel_graph.h"
@@ -14,6 +15,8 @@
 #include "query/interpolation/interpolate.h"
 #include "query/regions/distance_values.h"
 #include "query/regions/focal.h"
+#include "query/regions/run_off.h"
+#include "query/regions/watershed.h"
 #include "room/layers.h"
 #include "room/pipeline/expression_binding.h"
 #include "room/queries.h"
@@ -31,15 +34,17 @@ constexpr std::uint64_t kSeamBytesPerTexel = 2048;
 // Computes functions of one formula.
 class SurfaceFunctionValues {
  public:
-  SurfaceFunctionValues(const Services& services, const Layer& layer, const Author& author,
-                        std::shared_ptr<const mesh::SurfaceMap> map,
-                        std::shared_ptr<const mesh::TexelGraph> graph, const query::Frame& frame)
+  SurfaceFunctionValues(const Services& services, room::Room& room, const Layer& layer,
+                        const Author& author, std::shared_ptr<const mesh::SurfaceMap> map,
+                        std::shared_ptr<const mesh::TexelGraph> graph)
       : services_(services),
         layer_(layer),
         author_(author),
+        geometry_(room.surface().geometry()),
         map_(std::move(map)),
         graph_(std::move(graph)),
-        frame_(frame) {}
+        frame_{geometry_->origin, room.model().metres()},
+        up_(up_frame(room.model().up).up) {}
 
   // Reads `views`, and returns the values as one more.
   Result<query::LayerView> compute(const query::SurfaceFormula::Function& requested,
@@ -89,8 +94,25 @@ class SurfaceFunctionValues {
       return query::interpolated_values(
           function.op == Op::interpolated ? query::Interpolated::mean : query::Interpolated::error,
           values, type, function.number, *map_, *graph_, kField, progress, threads);
+    if (function.op == Op::watershed)
+      return query::watershed_values(values, type, function.number, *map_, *graph_, kField,
+                                     progress);
+    if (function.op == Op::run_off) return run_off(values, type, progress);
     return query::focal_values(focal_of(function.op), values, type, function.number, *map_, *graph_,
                                kField, progress, threads);
+  }
+
+  // In litres per metre of width, from the rain in l/m².
+  Result<query::SurfaceValues> run_off(const query::SurfaceValues& rain, ValueType type,
+                                       Progress& progress) const {
+    const auto drips = STRATA_TRY(
+        query::dripping_texels(geometry_, *map_, up_, progress, mesh::background_threads()));
+    auto water =
+        STRATA_TRY(query::run_off(rain, type, up_, drips, *map_, *graph_, progress)).passing;
+    for (std::uint32_t& bits : water.bits)
+      bits = std::bit_cast<std::uint32_t>(
+          static_cast<float>(double{std::bit_cast<float>(bits)} * frame_.metres));
+    return water;
   }
 
   static query::Focal focal_of(Op op) {
@@ -114,9 +136,11 @@ class SurfaceFunctionValues {
   const Services& services_;
   const Layer& layer_;
   const Author& author_;
+  const std::shared_ptr<const mesh::Geometry> geometry_;
   const std::shared_ptr<const mesh::SurfaceMap> map_;
   const std::shared_ptr<const mesh::TexelGraph> graph_;
   const query::Frame frame_;
+  const glm::dvec3 up_;
 };
 
 // Returns the layers of the model. Only those that the functions read have texels.
@@ -162,8 +186,8 @@ Result<void> compute_surface_functions(const Services& services, room::Room& roo
                                        Progress& progress, std::size_t first, std::size_t steps) {
   auto map = STRATA_TRY(room.surface().map(layer.resolution));
   auto graph = STRATA_TRY(room.surface().graph(layer.resolution));
-  const SurfaceFunctionValues values(services, layer, author, std::move(map), std::move(graph),
-                                     {room.surface().geometry()->origin, room.model().metres()});
+  const SurfaceFunctionValues values(services, room, layer, author, std::move(map),
+                                     std::move(graph));
   std::vector<query::LayerView> views = STRATA_TRY(views_read_by(room, formula));
   views.insert(views.end(), shapes.begin(), shapes.end());
   for (const auto& function : formula.functions) {

@@ -299,7 +299,7 @@ def test_neighborhoods(server):
     """Values within a radius along the surface, on two bands at x = 50."""
     expression = "case when x < 50 then 10 when y < 80 then 20 end"
     compute(server, "Bands", expression)
-    # The radius has 10 texels. The time grows with the square of the radius near seams.
+    # The radius has 10 texels.
     compute_along(server, "Mean", "focal_mean(bands, 0.5)")
     for x, right in ((20, 10), (50, 15), (80, 20)):
         near(value(server, "mean", x, 50)["value"], right, 0.05)
@@ -319,6 +319,27 @@ def test_neighborhoods(server):
     job = compute(server, "Wide", "focal_mean(bands, 50)", expect=202)
     done = server.wait_for_job(job["id"])
     assert done["state"] == "failed" and "40 texels" in done["problem"]["detail"], done
+
+
+def test_basins_and_water(server):
+    """Two valleys along x = 25 and x = 75, and a wall with rain."""
+    compute_along(server, "Basins", "watershed(min(abs(x - 25), abs(x - 75)), 10)")
+    basins = [value(server, "basins", x, y)["value"] for x in (10, 45, 55, 90) for y in (20, 80)]
+    assert basins[0] == basins[1] == basins[2] == basins[3], basins
+    assert basins[4] == basins[5] == basins[6] == basins[7] == 3 - basins[0], basins
+    compute_along(server, "Basin", "watershed(min(abs(x - 25), abs(x - 75)), 30)")
+    near(select(server, "basin = 1"), server.get(M).json()["area_m2"], 1e-6)
+
+    # 2 l/m² on a wall of 100 mm: 2 l/m² · 0.05 m at half of its height
+    server.ok("PATCH", M, {"up": "y"})
+    compute_along(server, "Water", "run_off(2)")
+    near(value(server, "water", 30, 50)["value"], 0.1, 0.05)
+    near(value(server, "water", 30, 10)["value"], 0.18, 0.05)
+    # The surface faces down completely, so all water falls off where it is.
+    server.ok("PATCH", M, {"up": "-z"})
+    compute_along(server, "Dripping", "run_off(2)")
+    assert value(server, "dripping", 50, 50)["value"] < 2 * 0.1e-3
+    server.ok("PATCH", M, {"up": "z"})
 
 
 def test_interpolation(server):

@@ -435,7 +435,7 @@ EXPRESSION = {
     "condition": b'0.3 <= depth * 2 and not (valid("2020 survey") or salt-2 <> 4e-1)',
     "number": b"if(a > 1 or true, max(a, -b, .5), abs(a - b / 3)) + min(a, 2)",
     "names": b'A == "and" AND b_1-c != 2',
-    "focal": b"focal_mean(a - b, 2.5) > focal_max(a, 1e3) or focal_variety(a.b, 5) = focal_min(3, 0) or hot_spot(a, 2) > 1.96",
+    "focal": b"focal_mean(a - b, 2.5) > focal_max(a, 1e3) or focal_variety(a.b, 5) = focal_min(3, 0) or hot_spot(a, 2) > 1.96 and watershed(a, 0.5) = run_off(b)",
     "interpolated": b"interpolated(round(a * 10), 80) + 2 * interpolation_error(a.b, 2.5) > focal_mean(c, 1)",
     "surface": b"within(distance(salt) < 5 or a.b, 2.5) and nearest(a.c, 1e3) + distance(valid(b)) > 1",
 }

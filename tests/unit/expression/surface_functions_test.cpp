@@ -54,6 +54,16 @@ TEST(SurfaceFunctions, of_neighborhoods_have_a_number_and_a_radius) {
   }
 }
 
+TEST(SurfaceFunctions, of_basins_have_a_height_and_of_water_only_the_rain) {
+  const Expression basins = number("watershed(wet, 0.5)");
+  EXPECT_EQ(basins.op, Op::watershed);
+  EXPECT_EQ(basins.number, 0.5);
+  const Expression water = number("run_off(max(0, nz) * 12)");
+  EXPECT_EQ(water.op, Op::run_off);
+  EXPECT_EQ(water.parts[0], number("max(0, nz) * 12"));
+  EXPECT_TRUE(basins.is_surface_function() && water.is_surface_function());
+}
+
 TEST(SurfaceFunctions, of_readings_have_a_number_and_a_range) {
   for (const auto& [name, op] : {std::pair("interpolated", Op::interpolated),
                                  std::pair("interpolation_error", Op::interpolation_error)}) {
@@ -107,6 +117,9 @@ TEST(SurfaceFunctions, are_refused_with_the_reason_and_the_place) {
            {"nearest('a')", kWrongType, 8},
            {"focal_mean(wet)", kSyntax, 14, 0, "a distance"},
            {"focal_min(wet > 1, 5)", kExpectsNumber, 10},
+           {"watershed(wet)", kSyntax, 13, 0, "a height"},
+           {"run_off(wet, 5)", kSyntax, 11},
+           {"run_off(wet > 1)", kExpectsNumber, 8},
            {"interpolated(wet)", kSyntax, 16, 0, "a distance"},
            {"interpolated(wet > 1, 80)", kExpectsNumber, 13},
            {"interpolation_error(wet, 80 mm)", kUnit, 25, 5, "unit of the model"},

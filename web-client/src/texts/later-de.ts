@@ -293,6 +293,8 @@ export const laterTexts = {
       ["focal_max(", "größter Wert im Umkreis: focal_max(Ebene, 20)"],
       ["focal_variety(", "Anzahl verschiedener Werte im Umkreis: focal_variety(Ebene, 20)"],
       ["hot_spot(", "wie ungewöhnlich der Mittelwert im Umkreis ist: hot_spot(Ebene, 20)"],
+      ["watershed(", "Nummern der Becken, etwa der Steine zwischen Fugen: watershed(Ebene, Höhe)"],
+      ["run_off(", "Wasser, das an der Oberfläche abläuft: run_off(Regen in l/m²)"],
       ["interpolated(", "interpolierte Messwerte: interpolated(Ebene, Reichweite)"],
       ["interpolation_error(", "Fehler der Interpolation: interpolation_error(Ebene, Reichweite)"],
     ],
