@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <random>
 
 #include "jobs/companions.h"
 #include "mesh/demo/demo_pot.h"
@@ -118,14 +119,33 @@ Result<mesh::LoadedMesh> load_named_mesh(const std::string& name, const fs::path
   return mesh::load_mesh(*files, progress);
 }
 
+namespace {
+
+// Changes the order of the triangles, and drops what belongs to it.
+void shuffle(mesh::TriangleMesh& mesh) {
+  std::vector<std::array<std::uint32_t, 3>> triangles(mesh.triangle_count());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    std::copy_n(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
+                triangles[i].begin());
+  std::shuffle(triangles.begin(), triangles.end(), std::mt19937(1));
+  mesh::TriangleMesh shuffled;
+  shuffled.positions = std::move(mesh.positions);
+  for (const auto& triangle : triangles)
+    shuffled.triangles.insert(shuffled.triangles.end(), triangle.begin(), triangle.end());
+  mesh = std::move(shuffled);
+}
+
+}  // namespace
+
 Result<BenchMesh> load_bench_mesh(const std::string& name, const BenchMeshOptions& options) {
   Progress progress;
   auto loaded = load_named_mesh(name, options.cache, progress);
   if (!loaded) return tl::unexpected(loaded.error());
-  const mesh::TriangleMesh& mesh = loaded->mesh;
+  mesh::TriangleMesh& mesh = loaded->mesh;
+  const bool makes = options.make_always || options.other_atlas || mesh.corner_uvs.empty();
+  if (options.other_atlas) shuffle(mesh);
   Result<mesh::Atlas> atlas = fail(ErrorCode::invalid, "", "");
-  if (!mesh.corner_uvs.empty() && !options.make_always)
-    atlas = mesh::keep_uvs(mesh, kLowestResolution, progress);
+  if (!makes) atlas = mesh::keep_uvs(mesh, kLowestResolution, progress);
   if (!atlas) atlas = mesh::make_atlas(mesh, kLowestResolution, progress);
   if (!atlas) return tl::unexpected(atlas.error());
   BenchMesh bench;

@@ -27,6 +27,7 @@ struct BenchMesh {
 struct BenchMeshOptions {
   std::filesystem::path cache = "build/bench";
   bool make_always = false;  // discards the file's own texture coordinates
+  bool other_atlas = false;  // shuffles the triangles, so that a made atlas has other charts
   std::string up = {};       // if neither the file nor the known scans have an axis; empty: z
 };
 
