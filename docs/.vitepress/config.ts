@@ -19,6 +19,7 @@ const howTo = {
     "clean-up-regions",
     "measure",
     "measure-distances",
+    "find-cracks",
     "find-stones",
     "interpolate-readings",
     "import-maps",

@@ -63,6 +63,10 @@ struct Expression {
     hot_spot,       // the z-score of a number at the texels around
     watershed,      // the number of the basin of a number, of basins at least `number` deep
     run_off,        // water that passes, from the rain on each place
+    valley,         // the depth of lines of low values with the width `number`
+    ridge,          // the height of lines of high values, likewise
+    // 1 where the first part is above the second, in a connected piece with a value above `number`.
+    hysteresis,
     // Along the surface, from the readings of a number (query/interpolation/interpolate) and the
     // range `number`.
     interpolated,         // the expected value

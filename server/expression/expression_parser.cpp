@@ -456,6 +456,7 @@ class Parser {
     if (is("date") || is("timestamp")) return time();
     if (is("interval")) return interval();
     if (is("within")) return within();
+    if (is("hysteresis")) return hysteresis();
     for (const NamedSurfaceFunction& each : kSurfaceFunctions)
       if (is(each.name)) return surface_function(each.op, each.limit);
     for (const Operator& each : operators()) {
@@ -480,7 +481,7 @@ class Parser {
   // Returns the end of the list of functions: ", distance, …".
   std::string surface_functions() const {
     if (names_ == Names::columns) return {};
-    std::string names = ", within";
+    std::string names = ", within, hysteresis";
     for (const NamedSurfaceFunction& each : kSurfaceFunctions)
       names += ", " + std::string(each.name);
     return names;
@@ -492,6 +493,7 @@ class Parser {
       if (row.form >= Form::number_function) names.emplace_back(row.name);
     if (names_ == Names::columns) return names;
     names.emplace_back("within");
+    names.emplace_back("hysteresis");
     for (const NamedSurfaceFunction& each : kSurfaceFunctions) names.emplace_back(each.name);
     return names;
   }
@@ -556,14 +558,52 @@ class Parser {
     return make(Op::known, at, surface_function(Op::distance, NamedSurfaceFunction::Limit::needed));
   }
 
+  Expression hysteresis() {
+    const auto at = token_.at;
+    const auto name_end = at_;
+    if (names_ == Names::columns) return refuse_surface();
+    advance();
+    expect("(");
+    const auto part_at = token_.at;
+    Expression part = disjunction();
+    Expression function = make(Op::hysteresis, at, numeric(std::move(part), part_at));
+    Expression low;
+    low.number = threshold();
+    function.parts.push_back(std::move(low));
+    function.number = threshold();
+    if (function.number < function.parts.back().number)
+      refuse("The second threshold must not be lower than the first one");
+    expect(")");
+    function.position = position(at, name_end);
+    return make(Op::known, at, std::move(function));
+  }
+
+  // Parses a comma and a number, which can be negative.
+  double threshold() {
+    if (!is(",")) refuse("Expected ',' and two thresholds, as in hysteresis(depth, 0.1, 0.3)");
+    take(",");
+    const double sign = take("-") ? -1 : 1;
+    if (token_.kind != Token::Kind::number) {
+      refuse("Write the threshold as a number, such as 0.3");
+      return 0;
+    }
+    const double number = token_.number;
+    advance();
+    refuse_unit("layer");
+    return sign * number;
+  }
+
+  Expression refuse_surface() {
+    return refuse_part(
+        "Records have no surface: use this function in a computed layer, and that layer in a "
+        "condition over layers",
+        position(token_.at, at_), mistake::kComputedLayersOnly);
+  }
+
   Expression surface_function(Op op, NamedSurfaceFunction::Limit needs) {
     const auto at = token_.at;
     const auto name_end = at_;
-    if (names_ == Names::columns)
-      return refuse_part(
-          "Records have no surface: use this function in a computed layer, and that layer in a "
-          "condition over layers",
-          position(at, name_end), mistake::kComputedLayersOnly);
+    if (names_ == Names::columns) return refuse_surface();
     advance();
     expect("(");
     const auto part_at = token_.at;

@@ -29,6 +29,8 @@ inline constexpr std::array kSurfaceFunctions{
     NamedSurfaceFunction{Expression::Op::focal_max, "focal_max"},
     NamedSurfaceFunction{Expression::Op::focal_variety, "focal_variety"},
     NamedSurfaceFunction{Expression::Op::hot_spot, "hot_spot"},
+    NamedSurfaceFunction{Expression::Op::valley, "valley"},
+    NamedSurfaceFunction{Expression::Op::ridge, "ridge"},
     NamedSurfaceFunction{Expression::Op::watershed, "watershed"},
     NamedSurfaceFunction{Expression::Op::run_off, "run_off", NamedSurfaceFunction::Limit::none},
     NamedSurfaceFunction{Expression::Op::interpolated, "interpolated"},

@@ -39,6 +39,17 @@ std::string with_limit(const char* function, const Expression& expression) {
   return text + " " + text_of(limit) + ")";
 }
 
+// Returns a call of hysteresis, whose thresholds can be negative.
+std::string hysteresis(const Expression& function) {
+  std::string text = "hysteresis(" + text_of(function.parts.at(0));
+  for (const double threshold : {function.parts.at(1).number, function.number}) {
+    char number[40];
+    text += ", ";
+    text.append(number, std::to_chars(number, number + sizeof number, threshold).ptr);
+  }
+  return text + ")";
+}
+
 std::string joined(const char* word, const Expression& expression) {
   // `a in (1)` has the same text as `a = 1`.
   if (expression.parts.size() == 1) return text_of(expression.parts[0]);
@@ -82,6 +93,9 @@ std::string text_of(const Expression& expression) {
     case Op::hot_spot: return with_limit("hot_spot", expression);
     case Op::watershed: return with_limit("watershed", expression);
     case Op::run_off: return call("run_off", expression);
+    case Op::valley: return with_limit("valley", expression);
+    case Op::ridge: return with_limit("ridge", expression);
+    case Op::hysteresis: return hysteresis(expression);
     case Op::interpolated: return with_limit("interpolated", expression);
     case Op::interpolation_error: return with_limit("interpolation_error", expression);
     case Op::add: return joined("+", expression);
@@ -115,7 +129,10 @@ std::string text_of(const Expression& expression) {
     case Op::fold_accents: return call("accenti", expression);
     case Op::truth: return expression.number == 1 ? "true" : "false";
     case Op::valid: return "valid(" + named(expression) + ")";
-    case Op::known: return "(" + part() + " is not null)";
+    case Op::known:
+      // The function alone is a condition in the text.
+      if (expression.parts.at(0).op == Op::hysteresis) return part();
+      return "(" + part() + " is not null)";
     case Op::holds: return "(" + part() + " = true)";
     case Op::less: return joined("<", expression);
     case Op::less_equal: return joined("<=", expression);

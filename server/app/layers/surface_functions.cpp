@@ -15,6 +15,8 @@
 #include "query/interpolation/interpolate.h"
 #include "query/regions/distance_values.h"
 #include "query/regions/focal.h"
+#include "query/regions/hysteresis.h"
+#include "query/regions/line_depth.h"
 #include "query/regions/run_off.h"
 #include "query/regions/watershed.h"
 #include "room/layers.h"
@@ -98,6 +100,13 @@ class SurfaceFunctionValues {
       return query::watershed_values(values, type, function.number, *map_, *graph_, kField,
                                      progress);
     if (function.op == Op::run_off) return run_off(values, type, progress);
+    if (function.op == Op::valley || function.op == Op::ridge)
+      return query::line_depth_values(
+          function.op == Op::valley ? query::Line::valley : query::Line::ridge, values, type,
+          function.number, *map_, *graph_, kField, progress, threads);
+    if (function.op == Op::hysteresis)
+      return query::hysteresis_values(values, type, {function.parts[1].number, function.number},
+                                      *map_, *graph_, progress);
     return query::focal_values(focal_of(function.op), values, type, function.number, *map_, *graph_,
                                kField, progress, threads);
   }

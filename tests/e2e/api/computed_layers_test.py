@@ -342,6 +342,31 @@ def test_basins_and_water(server):
     server.ok("PATCH", M, {"up": "z"})
 
 
+def test_lines(server):
+    """A groove of 4 texels, whose second half has half of the depth, and a separate shallow one."""
+    depth = "case when y < 30 then 10 when y < 36 then 5 else 0 end"
+    expression = (
+        "case when x < 48 or x > 53 or y < 20 or y > 40 then null "
+        f"when x between 49.9 and 50.1 then 20 - ({depth}) "
+        "when x between 51.9 and 52.1 and y < 30 then 15 else 20 end"
+    )
+    compute(server, "Groove", expression)
+    compute_along(server, "Depth", "valley(groove, 0.2)")
+    for x, y, right in ((50, 25, 10), (50, 33, 5), (52, 25, 5)):
+        near(value(server, "depth", x, y)["value"], right, 0.2)
+    assert value(server, "depth", 51, 25)["value"] < 0.1
+    assert not value(server, "depth", 60, 25)["valid"]
+    compute_along(server, "Raised", "ridge(0 - groove, 0.2) - valley(groove, 0.2)")
+    assert abs(value(server, "raised", 50, 25)["value"]) < 0.001
+    cracks = compute_along(server, "Cracks", "hysteresis(valley(groove, 0.2), 2.5, 8)")
+    assert cracks["type"] == "u8" and cracks["inputs"] == ["groove"], cracks
+    for x, y, found in ((50, 25, True), (50, 33, True), (52, 25, False), (51, 25, False)):
+        assert value(server, "cracks", x, y)["valid"] is found, (x, y)
+    job = compute(server, "Wide line", "valley(groove, 50)", expect=202)
+    done = server.wait_for_job(job["id"])
+    assert done["state"] == "failed" and "22 texels" in done["problem"]["detail"], done
+
+
 def test_interpolation(server):
     """Readings of a plane, 20 + x / 10, at 16 spots. Each spot of one value is one reading."""
     server.ok("POST", M + "/layers", {"name": "Moisture", "type": "f32", "resolution": 2048})

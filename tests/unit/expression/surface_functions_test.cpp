@@ -64,6 +64,32 @@ TEST(SurfaceFunctions, of_basins_have_a_height_and_of_water_only_the_rain) {
   EXPECT_TRUE(basins.is_surface_function() && water.is_surface_function());
 }
 
+TEST(SurfaceFunctions, of_lines_have_a_number_and_a_width) {
+  for (const auto& [name, op] : {std::pair("valley", Op::valley), std::pair("ridge", Op::ridge)}) {
+    const Expression line = number(std::string(name) + "(height - 2, 1.5)");
+    EXPECT_EQ(line.op, op);
+    EXPECT_EQ(line.number, 1.5);
+    EXPECT_EQ(line.parts[0], number("height - 2"));
+  }
+}
+
+TEST(SurfaceFunctions, hysteresis_is_a_condition_with_two_thresholds) {
+  const Expression known = condition("hysteresis(wet - dry, -0.5, 2)");
+  ASSERT_EQ(known.op, Op::known);
+  const Expression& function = known.parts[0];
+  EXPECT_EQ(function.op, Op::hysteresis);
+  EXPECT_TRUE(function.is_surface_function());
+  ASSERT_EQ(function.parts.size(), 2u);
+  EXPECT_EQ(function.parts[0], number("wet - dry"));
+  EXPECT_EQ(function.parts[1].number, -0.5);
+  EXPECT_EQ(function.number, 2);
+  EXPECT_EQ(number("if(hysteresis(wet, 1, 1), 3, 0)").op, Op::choose);
+  const auto formula = separate_surface_functions(
+      condition("hysteresis(valley(wet, 2), 1, 2) and hysteresis(valley(wet, 2), 1, 3)"), "e");
+  ASSERT_TRUE(formula);
+  EXPECT_EQ(formula->functions.size(), 3u);
+}
+
 TEST(SurfaceFunctions, of_readings_have_a_number_and_a_range) {
   for (const auto& [name, op] : {std::pair("interpolated", Op::interpolated),
                                  std::pair("interpolation_error", Op::interpolation_error)}) {
@@ -120,6 +146,14 @@ TEST(SurfaceFunctions, are_refused_with_the_reason_and_the_place) {
            {"watershed(wet)", kSyntax, 13, 0, "a height"},
            {"run_off(wet, 5)", kSyntax, 11},
            {"run_off(wet > 1)", kExpectsNumber, 8},
+           {"valley(wet)", kSyntax, 10, 0, "a distance"},
+           {"ridge(wet > 1, 2)", kExpectsNumber, 6},
+           {"hysteresis(wet, 1, 2)", kExpectsNumber, 0},
+           {"hysteresis(wet)", kSyntax, 14, 0, "two thresholds"},
+           {"hysteresis(wet, 1)", kSyntax, 17, 0, "two thresholds"},
+           {"hysteresis(wet, dry, 1)", kSyntax, 16, 0, "as a number"},
+           {"hysteresis(wet, 2, 1)", kSyntax, 20, 0, "lower than the first"},
+           {"hysteresis(wet > 1, 1, 2)", kExpectsNumber, 11},
            {"interpolated(wet)", kSyntax, 16, 0, "a distance"},
            {"interpolated(wet > 1, 80)", kExpectsNumber, 13},
            {"interpolation_error(wet, 80 mm)", kUnit, 25, 5, "unit of the model"},

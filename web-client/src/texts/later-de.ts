@@ -295,6 +295,12 @@ export const laterTexts = {
       ["hot_spot(", "wie ungewöhnlich der Mittelwert im Umkreis ist: hot_spot(Ebene, 20)"],
       ["watershed(", "Nummern der Becken, etwa der Steine zwischen Fugen: watershed(Ebene, Höhe)"],
       ["run_off(", "Wasser, das an der Oberfläche abläuft: run_off(Regen in l/m²)"],
+      ["valley(", "Tiefe von Rissen und Rillen einer Breite: valley(Ebene, 2)"],
+      ["ridge(", "Höhe von erhabenen Linien einer Breite: ridge(Ebene, 2)"],
+      [
+        "hysteresis(",
+        "Orte über 0,1, die mit einem Ort über 0,3 verbunden sind: hysteresis(Ebene, 0.1, 0.3)",
+      ],
       ["interpolated(", "interpolierte Messwerte: interpolated(Ebene, Reichweite)"],
       ["interpolation_error(", "Fehler der Interpolation: interpolation_error(Ebene, Reichweite)"],
     ],

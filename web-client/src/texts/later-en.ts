@@ -297,6 +297,12 @@ export const laterTexts = {
       ["hot_spot(", "how unusual the mean within a radius is: hot_spot(layer, 20)"],
       ["watershed(", "numbers of basins, such as stones between joints: watershed(layer, height)"],
       ["run_off(", "water that runs down the surface: run_off(rain in l/m²)"],
+      ["valley(", "depth of cracks and grooves of a width: valley(layer, 2)"],
+      ["ridge(", "height of raised lines of a width: ridge(layer, 2)"],
+      [
+        "hysteresis(",
+        "places above 0.1 that are connected to a place above 0.3: hysteresis(layer, 0.1, 0.3)",
+      ],
       ["interpolated(", "interpolated readings: interpolated(layer, range)"],
       ["interpolation_error(", "error of the interpolation: interpolation_error(layer, range)"],
     ] as [string, string][],

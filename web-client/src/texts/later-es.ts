@@ -294,6 +294,12 @@ export const laterTexts = {
       ["hot_spot(", "lo inusual que es la media en un radio: hot_spot(capa, 20)"],
       ["watershed(", "números de las cuencas, como las piedras entre juntas: watershed(capa, altura)"],
       ["run_off(", "agua que escurre por la superficie: run_off(lluvia en l/m²)"],
+      ["valley(", "profundidad de grietas y surcos de un ancho: valley(capa, 2)"],
+      ["ridge(", "altura de líneas elevadas de un ancho: ridge(capa, 2)"],
+      [
+        "hysteresis(",
+        "lugares por encima de 0,1 conectados con uno por encima de 0,3: hysteresis(capa, 0.1, 0.3)",
+      ],
       ["interpolated(", "mediciones interpoladas: interpolated(capa, alcance)"],
       ["interpolation_error(", "error de la interpolación: interpolation_error(capa, alcance)"],
     ],
