@@ -1,6 +1,6 @@
 // The selection on the page: wand and polygon select together, the border is changed, and the
 // selection is saved, loaded after a reload, painted, renamed and deleted. A polygon follows the
-// contour of the pot, and a lasso moves to it.
+// contour of the pot, and a lasso moves to it. Strokes inside and outside find a sherd.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
@@ -248,6 +248,63 @@ test("a lasso that snaps to edges moves to the contour of the pot", async () => 
   await page.keyboard.press("Shift+A");
   await page.keyboard.press("Escape");
   await selection().waitFor({ state: "detached" });
+});
+
+test("strokes inside and outside find a sherd, are undone, accepted and painted", async () => {
+  await page.keyboard.press("Shift+L");
+  await browser.rested();
+  const next = (state) => selection().getByText(words.strokes.next[state], { exact: true });
+  const strokes = page.locator("strata-stage svg.over polyline[stroke-linecap]");
+  await next("none").waitFor();
+  await browser.drag([
+    [0.44, 0.58],
+    [0.52, 0.6],
+    [0.46, 0.7],
+  ]);
+  await next("no_outside").waitFor();
+  await shot("strokes_inside");
+  await page.keyboard.down("Alt");
+  await browser.drag([
+    [0.28, 0.62],
+    [0.34, 0.7],
+  ]);
+  await page.keyboard.up("Alt");
+  const first = await other_than(null, "the area between the strokes");
+  await radio(words.strokes.outside).click();
+  await browser.drag([
+    [0.58, 0.58],
+    [0.64, 0.6],
+  ]);
+  const second = await other_than(first, "the area with the third stroke");
+  assert.ok(second < first, `${second} is not less than ${first}`);
+  await from_menu(words.strokes.undo);
+  assert.equal(await other_than(second, "the area after the undone stroke"), first);
+  await from_menu(words.strokes.redo);
+  assert.equal(await other_than(first, "the area of the repeated stroke"), second);
+  await page.locator("strata-stage .surface").focus();
+  await page.keyboard.press("Control+z");
+  assert.equal(await other_than(second, "the area after the stroke was undone again"), first);
+  await page.locator("strata-stage .lit").waitFor();
+  await browser.close_notices();
+  await shot("strokes_found");
+  await page.keyboard.press("Enter");
+  await strokes.first().waitFor({ state: "detached" });
+  assert.equal(await shown_m2(), first);
+  assert.equal(await painted_m2(), 0, "strokes painted by themselves");
+  await page.keyboard.press("Enter");
+  await next("none").waitFor();
+  await browser.saved();
+  const within = { where: "valid(test)" };
+  const { layers, area_m2 } = await server.json("POST", `${base}/select`, {
+    within,
+    layers: ["pieces"],
+  });
+  const most = Math.max(...layers.pieces.keys.map((each) => each.area_m2));
+  assert.ok(most > 0.9 * area_m2, `only ${most} of ${area_m2} m² are on one sherd`);
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  assert.equal(await painted_m2(), 0);
+  await page.keyboard.press("l");
 });
 
 test("it is renamed and deleted in the list", async () => {

@@ -25,6 +25,7 @@ import type { FrameMessage } from "../net/frame-header";
 import type { Painting } from "../features/painting/painting";
 import type { SavedSelections } from "../features/painting/saved-selections";
 import type { Selection } from "../features/painting/selection";
+import type { Strokes } from "../features/painting/strokes";
 import type { Past } from "../features/past/past";
 import type { Visits } from "../features/past/visits";
 import type { PeopleCursors } from "../features/presence/people-cursors";
@@ -93,8 +94,10 @@ export interface ModelSession {
   readonly appearance: Appearance;
   readonly pointer: PointerWatch;
   readonly painting: Painting;
-  /** The selection of polygon, lasso and wand; null until it is loaded. */
+  /** The selection of polygon, lasso, wand and strokes; null until it is loaded. */
   selection: Selection | null;
+  /** The strokes inside and outside of an area; null until they are loaded. */
+  readonly strokes: Strokes | null;
   savedSelections: SavedSelections | null; // made at its first use
   readonly past: Past;
   readonly visits: Visits;

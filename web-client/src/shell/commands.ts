@@ -45,11 +45,12 @@ export function keyCommands(host: PageHost): Command[] {
       title: texts.tools[tool],
       glyph: tool,
       problem: kChangingTools.includes(tool) ? changing : undefined,
-      // if the tool is already active, shows its options
-      run: () =>
-        session.tools.active === tool && hasOptions(tool)
-          ? host.panel("layers")
-          : session.chooseTool(tool),
+      // if the tool is already active, shows its options, or changes the side of the strokes
+      run: () => {
+        if (session.tools.active !== tool || !hasOptions(tool)) session.chooseTool(tool);
+        else if (tool === "strokes") session.strokes?.draw(!session.strokes.drawsInside);
+        else host.panel("layers");
+      },
     }),
   );
   const snap = (): void => {

@@ -14,16 +14,20 @@ import { OrbitTool, PanTool } from "../tools/navigate";
 import { LassoTool, PolygonTool, type EdgeSnapping } from "../tools/outline";
 import { PickTool } from "../features/painting/pick-tool";
 import type { Selection } from "../features/painting/selection";
+import type { Strokes } from "../features/painting/strokes";
+import { StrokesTool } from "../features/painting/strokes-tool";
 import { WandTool } from "../features/painting/wand-tool";
 import { PointTool } from "../features/records/point-tool";
 import type { Tool, ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 
 export interface ToolHost {
-  /** Uses the selection of polygon, lasso and wand, after it is loaded. */
+  /** Uses the selection of polygon, lasso, wand and strokes, after it is loaded. */
   withSelection(use: (selection: Selection) => void): void;
   /** Returns null until it is loaded. */
   edges(): EdgeSnapping | null;
+  /** Returns null until they are loaded. */
+  strokes(): Strokes | null;
   /** Another tool was activated. */
   chosen(name: ToolName): void;
   /** The outline of the active tool has changed. */
@@ -105,6 +109,7 @@ export function makeTools(session: ModelSession, host: ToolHost): ToolManager {
     eraser: new BrushTool("eraser", brushHost),
     polygon: new PolygonTool(outlineHost),
     lasso: new LassoTool(outlineHost),
+    strokes: new StrokesTool({ strokes: () => host.strokes() }),
     bucket: new BucketTool((sample) => session.painting.fillAt(sample)),
     wand: new WandTool({
       orbit: navigator.orbit,

@@ -36,6 +36,7 @@ import "../features/painting/wand-panel";
 
 export { EdgeSnapper } from "../features/painting/edge-snapper";
 export { sharpFrames } from "../features/painting/sharp-frame";
-export { selectionOf } from "../features/painting/selection-of";
+export { makeStrokes, selectionOf } from "../features/painting/selection-of";
 export { selectionOverlay } from "../features/painting/selection-overlay";
+export { strokesOverlay } from "../features/painting/strokes-overlay";
 export { modelDialog } from "./open-dialog";

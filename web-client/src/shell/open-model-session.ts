@@ -52,7 +52,8 @@ import { Painting } from "../features/painting/painting";
 import type { EdgeSnapper } from "../features/painting/edge-snapper";
 import type { SavedSelections } from "../features/painting/saved-selections";
 import type { Selection } from "../features/painting/selection";
-import type { sharpFrames, ShownFrame } from "../features/painting/sharp-frame";
+import type { SharpFrame, sharpFrames, ShownFrame } from "../features/painting/sharp-frame";
+import type { Strokes } from "../features/painting/strokes";
 import { Past } from "../features/past/past";
 import { Visits } from "../features/past/visits";
 import { PeopleCursors } from "../features/presence/people-cursors";
@@ -77,9 +78,10 @@ import { eventsOfParts } from "./live-events";
 import { makeTools } from "./make-tools";
 import { partOf, withPart } from "./page-parts";
 
-/** The exports of a later part that make the selection and follow edges. */
+/** The exports of a later part that make the selection, and find edges and areas in frames. */
 interface SelectionPart {
   selectionOf(session: ModelSession): Selection;
+  makeStrokes(session: ModelSession, frame: () => SharpFrame | null): Strokes;
   EdgeSnapper: typeof EdgeSnapper;
   sharpFrames: typeof sharpFrames;
 }
@@ -139,6 +141,8 @@ export class OpenModelSession implements ModelSession {
   // a frame of the second view without an acknowledgment
   private _thenWithoutAck: number | null = null;
   private _edges: EdgeSnapper | null = null;
+  private _strokes: Strokes | null = null;
+  private _sharpFrame: (() => SharpFrame | null) | null = null;
 
   constructor(
     readonly api: Api,
@@ -382,6 +386,7 @@ export class OpenModelSession implements ModelSession {
       },
       outline: () => this.changed("tools"),
       edges: () => this.edges,
+      strokes: () => this.strokes,
       withSelection,
     });
   }
@@ -408,14 +413,23 @@ export class OpenModelSession implements ModelSession {
     const part = partOf("model_dialogs") as SelectionPart | undefined;
     if (!part) return null;
     return (this._edges ??= new part.EdgeSnapper({
-      frame: part.sharpFrames(
-        () => this.shownFrame(),
-        (seq) => this._connection.cameraInFrame(seq),
-      ),
+      frame: this.sharpFrame(part),
       window: () => this.view.camera,
       scale: () => this.view.scale,
       nowMs: () => performance.now(),
     }));
+  }
+
+  get strokes(): Strokes | null {
+    const part = partOf("model_dialogs") as SelectionPart | undefined;
+    return part ? (this._strokes ??= part.makeStrokes(this, this.sharpFrame(part))) : null;
+  }
+
+  private sharpFrame({ sharpFrames: make }: SelectionPart): () => SharpFrame | null {
+    return (this._sharpFrame ??= make(
+      () => this.shownFrame(),
+      (seq) => this._connection.cameraInFrame(seq),
+    ));
   }
 
   private makeConnection(makeSocket?: (url: string, protocol: string) => SocketLike): Connection {
@@ -570,14 +584,27 @@ export class OpenModelSession implements ModelSession {
     this.tools.choose(column.kind === "line" ? "line" : "point");
   }
 
-  /** Undoes a stroke. With tools that add to records, undoes a change to the table. */
+  /**
+   * Undoes a stroke. With tools that add to records, undoes a change to the table. Strokes of an
+   * area that can still change are undone first.
+   */
   undo(): void {
     if (this.refusesChanges()) return;
+    const strokes = this.tools.active === "strokes" ? this.strokes : null;
+    if (strokes?.isOpen) {
+      strokes.undo();
+      return;
+    }
     if (kMarkingTools.includes(this.tools.active)) this.marks.undo();
     else this.painting.undo();
   }
   redo(): void {
     if (this.refusesChanges()) return;
+    const strokes = this.tools.active === "strokes" ? this.strokes : null;
+    if (strokes?.canRedo) {
+      strokes.redo();
+      return;
+    }
     if (kMarkingTools.includes(this.tools.active)) this.marks.redo();
     else this.painting.redo();
   }

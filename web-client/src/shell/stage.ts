@@ -246,6 +246,7 @@ export class StrataStage extends LitElement {
     const aims =
       tool === "polygon" ||
       tool === "lasso" ||
+      tool === "strokes" ||
       tool === "bucket" ||
       tool === "wand" ||
       tool === "pick" ||
@@ -265,6 +266,7 @@ export class StrataStage extends LitElement {
         ${this.litArea()}
         ${paints ? this.brushCursor() : nothing}
         ${this.selectionOutlines()}
+        ${tool === "strokes" ? this.strokes() : nothing}
         ${outline ? outlineOverlay(session, outline) : nothing}
         ${tool === "measure" ? measureOverlay(session) : nothing}
       </div>
@@ -283,6 +285,13 @@ export class StrataStage extends LitElement {
     if (!selection || selection.isEmpty) return nothing;
     const { selectionOverlay } = partOf("model_dialogs") as typeof import("./model-dialogs");
     return selectionOverlay(selection, this.session.view.scale);
+  }
+
+  private strokes(): TemplateResult | typeof nothing {
+    const { strokes, view } = this.session;
+    if (!strokes) return nothing;
+    const { strokesOverlay } = partOf("model_dialogs") as typeof import("./model-dialogs");
+    return strokesOverlay(strokes, view.scale);
   }
 
   /** Draws hatching over the highlighted part of the surface. */

@@ -432,6 +432,7 @@ export const texts = {
     polygon: "Polygon",
     lasso: "Lasso",
     bucket: "Zusammenhängend füllen",
+    strokes: "Mit Strichen auswählen",
     wand: "Zauberstab",
     pick: "Wert aufnehmen",
     line: "Linie",
@@ -624,6 +625,8 @@ export const texts = {
       polygon:
         "Klicken Sie die Eckpunkte an. Zum Schließen klicken Sie auf den ersten oder drücken Eingabe. Rücktaste entfernt den letzten Eckpunkt, Esc bricht ab. Danach ziehen Sie Eckpunkte an eine andere Stelle, oder die kleinen Punkte dazwischen, um Eckpunkte einzufügen.",
       lasso: "Umfahren Sie den Bereich, der ausgewählt werden soll.",
+      strokes:
+        "Zeichnen Sie einen kurzen Strich in der Fläche und einen außerhalb: mit gedrückter Alt-Taste oder mit „Außen“. Weitere Striche korrigieren die Fläche.",
       bucket: "Klicken Sie eine Stelle an, um die zusammenhängende Fläche dort zu füllen.",
     },
     does: "Aktion",

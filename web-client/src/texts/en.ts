@@ -403,6 +403,7 @@ export const texts = {
     polygon: "Polygon",
     lasso: "Lasso",
     bucket: "Fill connected",
+    strokes: "Select by strokes",
     wand: "Wand",
     pick: "Pick a value",
     line: "Line",
@@ -593,6 +594,8 @@ export const texts = {
       polygon:
         "Click the corners. Click the first corner or press Enter to close the polygon. Backspace removes the last corner, Escape cancels. Then drag corners to move them, or drag the small dots between them to add corners.",
       lasso: "Draw an outline around the area to select.",
+      strokes:
+        "Draw a short stroke inside the area, and one outside of it: hold Alt, or choose Outside. Further strokes correct the area.",
       bucket: "Click a point to fill the area connected to it.",
     },
     does: "Action",

@@ -425,6 +425,7 @@ export const texts = {
     polygon: "Polígono",
     lasso: "Lazo",
     bucket: "Rellenar área conectada",
+    strokes: "Seleccionar con trazos",
     wand: "Varita mágica",
     pick: "Tomar un valor",
     line: "Línea",
@@ -618,6 +619,8 @@ export const texts = {
       polygon:
         "Haga clic en los vértices. Haga clic en el primero o pulse Intro para cerrar. Retroceso quita el último vértice, Escape cancela. Después arrastre los vértices para moverlos, o los puntos pequeños entre ellos para insertar vértices.",
       lasso: "Dibuje alrededor de la zona que quiere seleccionar.",
+      strokes:
+        "Dibuje un trazo corto dentro de la zona y otro fuera: mantenga pulsada Alt o elija «Fuera». Más trazos corrigen la zona.",
       bucket: "Haga clic en un lugar para rellenar el área conectada con él.",
     },
     does: "Acción",

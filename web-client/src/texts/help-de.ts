@@ -37,6 +37,10 @@ export const help: HelpTexts = {
       "Polygon oder Linie an Kanten und Rissen ausrichten oder nicht mehr; jeder Klick legt den gezeigten Verlauf fest",
     ],
     [
+      "Umschalt + L, dann Striche",
+      "Fläche mit Strichen darin und, mit Alt, außerhalb auswählen; Umschalt + L: andere Seite; Strg + Z: Strich zurücknehmen; Enter: Fläche übernehmen",
+    ],
+    [
       "Polygon, Lasso oder Zauberstab mit Umschalt · Alt",
       "zur Auswahl hinzufügen · von ihr abziehen; beide: Schnittmenge; Rücktaste entfernt den letzten Teil, Enter füllt, Esc verwirft",
     ],

@@ -29,6 +29,10 @@ export const help = {
       "snap the polygon or line to edges and cracks, or stop snapping; each click fixes the previewed path",
     ],
     [
+      "Shift + L, then strokes",
+      "select an area by strokes inside it and, with Alt, outside of it; Shift + L: other side; Ctrl + Z: undo a stroke; Enter: accept the area",
+    ],
+    [
       "Polygon, lasso or wand with Shift · Alt",
       "add to the selection · subtract from it; both: intersect; Backspace removes the last part, Enter fills, Escape discards",
     ],

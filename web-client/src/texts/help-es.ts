@@ -40,6 +40,10 @@ export const help: HelpTexts = {
       "ajustar el polígono o la línea a bordes y grietas, o dejar de hacerlo; cada clic fija el trazo mostrado",
     ],
     [
+      "Mayús + L y trazos",
+      "seleccionar una zona con trazos dentro y, con Alt, fuera; Mayús + L: el otro lado; Ctrl + Z: deshacer un trazo; Intro: aceptar la zona",
+    ],
+    [
       "Polígono, lazo o varita con Mayús · Alt",
       "añadir a la selección · restar de ella; ambas: intersecar; Retroceso quita la última parte, Intro rellena, Esc descarta",
     ],

@@ -762,6 +762,25 @@ export const laterTexts = {
     },
   },
 
+  strokes: {
+    keys: "Eingabe übernimmt die Fläche und füllt danach die Auswahl. Esc verwirft die Striche und danach die Auswahl. Rücktaste entfernt den letzten Strich. Umschalt beim ersten Strich fügt seine Fläche zur Auswahl hinzu.",
+    side: "Nächster Strich",
+    inside: "Innen",
+    inside_hint: "Striche liegen in der Fläche, mit Alt außerhalb",
+    outside: "Außen",
+    outside_hint: "Striche liegen außerhalb der Fläche, mit Alt darin",
+    undo: "Letzten Strich zurücknehmen",
+    redo: "Strich wiederherstellen",
+    next: {
+      none: "Zeichnen Sie einen Strich in der Fläche.",
+      no_inside: "Zeichnen Sie nun einen Strich in der Fläche: Wählen Sie „Innen“.",
+      no_outside:
+        "Zeichnen Sie nun einen Strich außerhalb der Fläche: Halten Sie Alt gedrückt oder wählen Sie „Außen“.",
+      searching: "Die Fläche wird gesucht …",
+      nothing: "Keine Fläche gefunden. Zeichnen Sie innen einen längeren Strich.",
+    },
+  },
+
   wand: {
     how: "Klicken Sie eine Stelle an, um die Oberfläche auszuwählen, die ihr gleicht. Ziehen dreht das Modell. Eingabe wählt in der Bildmitte aus, Umschalt + Eingabe fügt dort hinzu.",
     by: "Vergleichen",

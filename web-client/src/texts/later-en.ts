@@ -751,6 +751,24 @@ export const laterTexts = {
     },
   },
 
+  strokes: {
+    keys: "Enter accepts the area, and then fills the selection. Escape discards the strokes, and then the selection. Backspace removes the last stroke. Hold Shift at the first stroke to add its area to the selection.",
+    side: "Next stroke",
+    inside: "Inside",
+    inside_hint: "Strokes are inside the area, and outside of it with Alt",
+    outside: "Outside",
+    outside_hint: "Strokes are outside of the area, and inside with Alt",
+    undo: "Undo last stroke",
+    redo: "Redo stroke",
+    next: {
+      none: "Draw a stroke inside the area.",
+      no_inside: "Now draw a stroke inside the area: choose Inside.",
+      no_outside: "Now draw a stroke outside of the area: hold Alt, or choose Outside.",
+      searching: "Finding the area…",
+      nothing: "No area found. Draw a longer stroke inside.",
+    },
+  },
+
   wand: {
     how: "Click a point to select the surface that looks like it. Drag to orbit. Enter selects in the middle of the view, Shift + Enter adds it there.",
     by: "Compare",

@@ -754,6 +754,24 @@ export const laterTexts = {
     },
   },
 
+  strokes: {
+    keys: "Intro acepta la zona y después rellena la selección. Esc descarta los trazos y después la selección. Retroceso quita el último trazo. Con Mayús en el primer trazo, su zona se añade a la selección.",
+    side: "Siguiente trazo",
+    inside: "Dentro",
+    inside_hint: "Los trazos están dentro de la zona y, con Alt, fuera",
+    outside: "Fuera",
+    outside_hint: "Los trazos están fuera de la zona y, con Alt, dentro",
+    undo: "Deshacer el último trazo",
+    redo: "Rehacer el trazo",
+    next: {
+      none: "Dibuje un trazo dentro de la zona.",
+      no_inside: "Ahora dibuje un trazo dentro de la zona: elija «Dentro».",
+      no_outside: "Ahora dibuje un trazo fuera de la zona: mantenga pulsada Alt o elija «Fuera».",
+      searching: "Buscando la zona…",
+      nothing: "No se encontró ninguna zona. Dibuje dentro un trazo más largo.",
+    },
+  },
+
   wand: {
     how: "Haga clic en un lugar para seleccionar la superficie que se le parece. Arrastre para girar. Intro selecciona en el centro de la vista, Mayús + Intro la añade allí.",
     by: "Comparar",

@@ -11,6 +11,7 @@ export type ToolName =
   | "polygon"
   | "lasso"
   | "bucket"
+  | "strokes"
   | "wand"
   | "pick"
   | "line"
@@ -28,6 +29,7 @@ export const kRailTools: readonly Exclude<ToolName, "face" | "part">[] = [
   "eraser",
   "polygon",
   "lasso",
+  "strokes",
   "bucket",
   "wand",
   "line",
@@ -41,7 +43,7 @@ export const kMarkingTools: readonly ToolName[] = ["line", "point"];
 /** Tools that can follow edges in the picture. */
 export const kSnappingTools: readonly ToolName[] = ["polygon", "lasso", "line"];
 /** Tools that select a part of the surface. */
-export const kSelectingTools: readonly ToolName[] = ["polygon", "lasso", "wand"];
+export const kSelectingTools: readonly ToolName[] = ["polygon", "lasso", "strokes", "wand"];
 /** Tools that keep the selection: tools that select, and tools that only look at the model. */
 export const kSelectionKeepingTools: readonly ToolName[] = [
   ...kSelectingTools,
@@ -56,6 +58,7 @@ export const kPaintingTools: readonly ToolName[] = [
   "eraser",
   "polygon",
   "lasso",
+  "strokes",
   "bucket",
   "wand",
   ...kMarkingTools,

@@ -98,6 +98,46 @@ describe("The probability to reach the inside", () => {
     );
   });
 
+  it("leans to a side with the weight of the leaning", () => {
+    const lean = (...numbers: number[]): number =>
+      randomWalker(
+        gray(3, 1, [7, 7, 7]),
+        Uint8Array.from([kInside, 0, kOutside]),
+        Float32Array.from(numbers),
+      )[1]!;
+    expect(lean(0, 0, 0)).toBeCloseTo(0.5, 3);
+    expect(lean(9, 2, 9)).toBeCloseTo(3 / 4, 3);
+    expect(lean(9, -2, 9)).toBeCloseTo(1 / 4, 3);
+    const alone = randomWalker(gray(1, 1, [3]), new Uint8Array(1), Float32Array.from([0.1]));
+    expect(alone[0]).toBeCloseTo(1, 3);
+  });
+
+  it("falls evenly across a large flat picture", () => {
+    const [width, height] = [300, 200];
+    const given = new Uint8Array(width * height);
+    for (let y = 0; y < height; ++y) {
+      given[y * width] = kInside;
+      given[(y + 1) * width - 1] = kOutside;
+    }
+    const picture = gray(width, height, Array<number>(width * height).fill(90));
+    randomWalker(picture, given).forEach((value, at) =>
+      expect(Math.abs(value - (1 - (at % width) / (width - 1)))).toBeLessThan(0.01),
+    );
+  });
+
+  it("does not pass a closed edge in a large picture", () => {
+    const size = 200;
+    const isIn = (at: number): boolean =>
+      Math.hypot((at % size) - 100, Math.floor(at / size) - 100) < 60;
+    const values = Array.from({ length: size * size }, (_, at) => (isIn(at) ? 160 : 90));
+    const given = new Uint8Array(size * size);
+    given[100 * size + 90] = kInside;
+    given[5 * size + 190] = kOutside;
+    randomWalker(gray(size, size, values), given).forEach((value, at) =>
+      expect(value > 0.5).toBe(isIn(at)),
+    );
+  });
+
   it("is a half where nothing is given", () => {
     expect([...randomWalker(gray(2, 2, [1, 9, 9, 1]), new Uint8Array(4))]).toEqual([
       0.5, 0.5, 0.5, 0.5,
@@ -108,5 +148,9 @@ describe("The probability to reach the inside", () => {
   it("needs as many pixels as the size says", () => {
     expect(() => randomWalker(gray(2, 2, [1, 2, 3]), new Uint8Array(4))).toThrow(RangeError);
     expect(() => randomWalker(gray(2, 2, [1, 2, 3, 4]), new Uint8Array(3))).toThrow(RangeError);
+    const few = new Float32Array(3);
+    expect(() => randomWalker(gray(2, 2, [1, 2, 3, 4]), new Uint8Array(4), few)).toThrow(
+      RangeError,
+    );
   });
 });

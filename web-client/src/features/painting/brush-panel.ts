@@ -97,7 +97,8 @@ export class StrataBrushPanel extends LitElement {
     if (session.lockedTarget) return this.locked(session.lockedTarget);
     if (tool === "brush" || tool === "eraser") return this.strokes(layer, tool === "eraser");
     if (tool === "line" || tool === "point") return this.marks(layer, tool);
-    return this.areas(layer, tool === "bucket" ? "bucket" : tool === "lasso" ? "lasso" : "polygon");
+    if (tool === "strokes" || tool === "bucket" || tool === "lasso") return this.areas(layer, tool);
+    return this.areas(layer, "polygon");
   }
 
   private locked(layer: Layer): TemplateResult {
@@ -115,14 +116,14 @@ export class StrataBrushPanel extends LitElement {
       ${this.through()} ${this.slant()} ${this.session.painting.penUsed ? this.pressure() : nothing} ${erases ? nothing : this.whole(layer)}`;
   }
 
-  private areas(layer: Layer, tool: "bucket" | "lasso" | "polygon"): TemplateResult {
+  private areas(layer: Layer, tool: "bucket" | "lasso" | "polygon" | "strokes"): TemplateResult {
     const { session } = this;
     const { painting } = session;
     const { erases, reach } = painting.brush.areas;
     const words = texts.areas;
     return html`<h2>${texts.tools[tool]}</h2>
       <p class="hint">${words.how[tool]}</p>
-      ${tool === "bucket" ? nothing : this.snaps()}
+      ${tool === "bucket" || tool === "strokes" ? nothing : this.snaps()}
       ${tool === "bucket" || !session.selection ? nothing : html`<strata-selection-panel .session=${session}></strata-selection-panel>`}
       ${radioGroup<boolean>({
         label: words.does,

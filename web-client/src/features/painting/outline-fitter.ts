@@ -2,10 +2,9 @@
 // outside, and a random walker between the two sides decides. Where it finds no edge, the outline
 // stays about where it was drawn.
 
-import { contours } from "d3-contour";
-import { simplifyLine } from "../../domain/marks";
 import { kInside, kOutside, kUnknown, randomWalker } from "../../math/random-walker";
 import type { Point } from "../../net/stroke";
+import { markNear, partsAbove, signedArea, simplified, type Ring, type Size } from "./masks";
 import type { SharpFrame } from "./sharp-frame";
 
 /** The distance in CSS pixels by which an outline can move to an edge. */
@@ -23,14 +22,10 @@ const kTolerance = 0.75; // of the simplified outline, in pixels of the frame
 // this share of its area, the outline stays as drawn.
 const kMainShare = 0.9;
 
-type Ring = [number, number][];
-
 /** A rectangle of the frame. */
-interface Box {
+interface Box extends Size {
   x: number;
   y: number;
-  width: number;
-  height: number;
 }
 
 /**
@@ -49,13 +44,14 @@ export function fittedOutline(
   if (width < kLeastReach || !box || box.width * box.height > kMostFitPixels) return asDrawn;
   const drawn = outline.map(([x, y]): Point => [x - box.x, y - box.y]);
   const given = insideOf(drawn, box);
-  forgetNear(drawn, width, box, given);
+  // Pixels that are at most as far from the outline as it can move are unknown.
+  markNear([...drawn, drawn[0]!], width, box, given, kUnknown);
   const unknown = given.reduce((count, kind) => count + Number(kind === kUnknown), 0);
   if (!given.includes(kInside) || unknown > kMostUnknown) return asDrawn;
   const pixels = frame.read(box.x, box.y, box.width, box.height);
   const picture = { width: box.width, height: box.height, channels: 4 as const, pixels };
   const ring = mainRing(randomWalker(picture, given), box);
-  const fitted = ring ? simplified(ring) : [];
+  const fitted = ring ? simplified(ring, kTolerance) : [];
   // A row of single pixels can become a line.
   return fitted.length >= 3 ? fitted.map(([x, y]) => [x + box.x, y + box.y]) : asDrawn;
 }
@@ -68,15 +64,6 @@ function widthOf(outline: readonly Point[]): number {
     border += Math.hypot(nextX - x, nextY - y);
   });
   return border > 0 ? (2 * Math.abs(signedArea(outline))) / border : 0;
-}
-
-function signedArea(ring: readonly (readonly [number, number])[]): number {
-  let twice = 0;
-  ring.forEach(([x, y], at) => {
-    const [nextX, nextY] = ring[(at + 1) % ring.length]!;
-    twice += x * nextY - nextX * y;
-  });
-  return twice / 2;
 }
 
 /** Returns the rectangle of the frame with all pixels that can be inside, and with their neighbors. */
@@ -114,35 +101,9 @@ function insideOf(outline: readonly Point[], { width, height }: Box): Uint8Array
   return given;
 }
 
-/** Makes all pixels unknown that are at most as far from the outline as it can move. */
-function forgetNear(
-  outline: readonly Point[],
-  reach: number,
-  { width, height }: Box,
-  given: Uint8Array,
-): void {
-  const forgetAround = (centerX: number, centerY: number): void => {
-    const first = Math.max(0, Math.ceil(centerY - reach - 0.5));
-    const last = Math.min(height - 1, Math.floor(centerY + reach - 0.5));
-    for (let y = first; y <= last; ++y) {
-      const half = Math.sqrt(Math.max(0, reach ** 2 - (y + 0.5 - centerY) ** 2));
-      const from = Math.max(0, Math.ceil(centerX - half - 0.5));
-      const to = Math.min(width, Math.floor(centerX + half - 0.5) + 1);
-      if (from < to) given.fill(kUnknown, y * width + from, y * width + to);
-    }
-  };
-  outline.forEach(([x, y], at) => {
-    const [nextX, nextY] = outline[(at + 1) % outline.length]!;
-    const steps = Math.max(1, Math.ceil(Math.hypot(nextX - x, nextY - y)));
-    for (let step = 0; step < steps; ++step)
-      forgetAround(x + ((nextX - x) * step) / steps, y + ((nextY - y) * step) / steps);
-  });
-}
-
 /** Returns the largest outline around the inside, or null if it does not have most of the inside. */
-function mainRing(inside: Float32Array, { width, height }: Box): Ring | null {
-  const { coordinates } = contours().size([width, height]).contour(Array.from(inside), 0.5);
-  const rings = coordinates.map(([outer]) => outer as Ring);
+function mainRing(inside: Float32Array, box: Box): Ring | null {
+  const rings = partsAbove(inside, box).map(([outer]) => outer!);
   let [main, most, sum]: [Ring | null, number, number] = [null, 0, 0];
   for (const ring of rings) {
     const area = Math.abs(signedArea(ring));
@@ -150,12 +111,4 @@ function mainRing(inside: Float32Array, { width, height }: Box): Ring | null {
     if (area > most) [main, most] = [ring, area];
   }
   return most >= kMainShare * sum ? main : null;
-}
-
-/** Returns fewer points of a closed ring, whose last point equals the first. */
-function simplified(ring: Ring): Ring {
-  const places = ring.map(([x, y]): [number, number, number] => [x, y, 0]);
-  return simplifyLine(places, () => kTolerance)
-    .slice(0, -1)
-    .map(([x, y]) => [x, y]);
 }

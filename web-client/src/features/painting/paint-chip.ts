@@ -7,7 +7,7 @@ import { customElement, property } from "lit/decorators.js";
 import { formatNumber } from "../../domain/measure";
 import { labelOf } from "../../domain/cells";
 import { colorOf, cssColor } from "../../domain/palette";
-import { kPaintingTools } from "../../tools/tool";
+import { kPaintingTools, kSelectingTools } from "../../tools/tool";
 import { describeValue } from "../../session/layer-values";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
@@ -73,7 +73,7 @@ export class StrataPaintChip extends LitElement {
     if (!kPaintingTools.includes(tool) || !layer) return nothing;
     const words = texts.brush;
     const { brush } = painting;
-    const areas = tool === "polygon" || tool === "lasso" || tool === "bucket";
+    const areas = kSelectingTools.includes(tool) || tool === "bucket";
     const erases = tool === "eraser" || (areas && brush.areas.erases);
     const value = brush.valueFor(layer);
     const color = erases ? null : colorOf(session.layers.palette(layer), value);

@@ -1,5 +1,5 @@
-// <strata-selection-bar>: a bar over the 3D view while polygon, lasso or wand have selected an area.
-// It shows the area's size and the effect of the next part. Its controls change, save, paint, erase
+// <strata-selection-bar>: a bar over the 3D view while polygon, lasso, wand or strokes have selected an
+// area, and always while strokes are drawn. It shows the area's size and the effect of the next part. Its controls change, save, paint, erase
 // or discard the selection. It is in the page while one of these tools is active, because screen
 // readers announce only changes of an element that already exists.
 
@@ -18,6 +18,8 @@ import { texts } from "../../texts";
 import type { Selection, SelectionMode } from "./selection";
 import "./selection-border";
 import { selectionOf } from "./selection-of";
+import { strokeControls } from "./stroke-controls";
+import type { Strokes } from "./strokes";
 
 const words = texts.selection;
 const kModes: readonly SelectionMode[] = ["replace", "add", "subtract", "intersect"];
@@ -53,6 +55,9 @@ export class StrataSelectionBar extends LitElement {
       .bar,
       .parts {
         flex-wrap: wrap;
+      }
+      .next {
+        color: var(--ink-soft);
       }
       .bar {
         position: relative;
@@ -118,19 +123,29 @@ export class StrataSelectionBar extends LitElement {
 
   override render(): TemplateResult {
     const selection = selectionOf(this.session);
-    return html`<span class="visually-hidden" role="status">${this.announcement(selection)}</span>
-      ${selection.isEmpty ? nothing : this.bar(selection)}`;
+    const strokes = this.session.tools.active === "strokes" ? this.session.strokes : null;
+    return html`<span class="visually-hidden" role="status">${this.announcement(selection, strokes)}</span>
+      ${selection.isEmpty && !strokes ? nothing : this.bar(selection, strokes)}`;
   }
 
-  private announcement({ isEmpty, measured }: Selection): string {
+  private announcement({ isEmpty, measured }: Selection, strokes: Strokes | null): string {
+    if (strokes?.isOpen && strokes.state !== "found") return texts.strokes.next[strokes.state];
     if (isEmpty || !measured) return "";
     if (measured.texels === 0) return words.nothing;
     return words.selected(formatArea(measured.area_m2), formatPercent(measured.share));
   }
 
-  private bar(selection: Selection): TemplateResult {
-    const { erases } = this.session.painting.brush.areas;
-    const { measured, unmeasured, busy } = selection;
+  private bar(selection: Selection, strokes: Strokes | null): TemplateResult {
+    return html`<div class="bar" role="group" aria-label=${words.title}>
+      <div class="parts">
+        ${strokes ? strokeControls(strokes) : nothing} ${selection.isEmpty ? nothing : this.parts(selection)}
+      </div>
+      ${selection.isEmpty ? nothing : this.actions(selection, strokes)}
+    </div>`;
+  }
+
+  private parts(selection: Selection): TemplateResult {
+    const { measured, unmeasured } = selection;
     const elsewhere = selection.outlines.filter(({ outline }) => !selection.isInView(outline));
     const size = measured
       ? measured.texels > 0
@@ -145,9 +160,7 @@ export class StrataSelectionBar extends LitElement {
         : measured
           ? words.share(formatPercent(measured.share))
           : "\u00a0";
-    return html`<div class="bar" role="group" aria-label=${words.title}>
-      <div class="parts">
-      <output class="numeric" aria-live="off">${size}<small>${details}</small></output>
+    return html`<output class="numeric" aria-live="off">${size}<small>${details}</small></output>
       ${unmeasured ? html`<button @click=${() => selection.measureAgain()}>${texts.try_again}</button>` : nothing}
       ${radioGroup<SelectionMode>({
         label: words.mode,
@@ -160,9 +173,13 @@ export class StrataSelectionBar extends LitElement {
         chosen: selection.mode,
         choose: (mode) => selection.setMode(mode),
       })}
-      ${this.session.tools.active === "wand" ? this.tolerance(selection) : nothing}
-      </div>
-      <div class="actions">
+      ${this.session.tools.active === "wand" ? this.tolerance(selection) : nothing}`;
+  }
+
+  private actions(selection: Selection, strokes: Strokes | null): TemplateResult {
+    const { erases } = this.session.painting.brush.areas;
+    const { busy } = selection;
+    return html`<div class="actions">
       ${
         selection.canDelete
           ? html`<button @click=${() => selection.deleteCorner()}>${words.delete_corner}</button>`
@@ -171,13 +188,12 @@ export class StrataSelectionBar extends LitElement {
       <strata-selection-border .selection=${selection}></strata-selection-border>
       <button class=${erases ? "" : "primary"} ?disabled=${busy} @click=${() => void selection.paint(false)}>${words.fill}</button>
       <button class=${erases ? "primary" : ""} ?disabled=${busy} @click=${() => void selection.paint(true)}>${words.erase}</button>
-      ${this.menu(selection)}
+      ${this.menu(selection, strokes)}
       <button class="icon quiet discard" aria-label=${words.discard} title=${words.discard} @click=${() => selection.clear()}>${icon("close")}</button>
-      </div>
-    </div>`;
+      </div>`;
   }
 
-  private menu(selection: Selection): TemplateResult {
+  private menu(selection: Selection, strokes: Strokes | null): TemplateResult {
     const item = (
       glyph: IconName,
       title: string,
@@ -185,9 +201,10 @@ export class StrataSelectionBar extends LitElement {
       disabled = false,
     ): TemplateResult =>
       html`<button class="quiet" role="menuitem" ?disabled=${disabled} @click=${act}>${icon(glyph)}${title}</button>`;
+    const drawn = texts.strokes;
     return html`<strata-menu label=${words.more}>
-      ${item("undo", words.undo, () => selection.undo(), !selection.canUndo)}
-      ${item("redo", words.redo, () => selection.redo(), !selection.canRedo)}
+      ${strokes?.isOpen ? item("undo", drawn.undo, () => strokes.undo()) : item("undo", words.undo, () => selection.undo(), !selection.canUndo)}
+      ${strokes?.isOpen ? item("redo", drawn.redo, () => strokes.redo(), !strokes.canRedo) : item("redo", words.redo, () => selection.redo(), !selection.canRedo)}
       <hr />
       ${item("chart", words.statistics, () => this.request("selection-statistics"))}
       ${item("plus", words.save, () => this.request("save-selection"))}

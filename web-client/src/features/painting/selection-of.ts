@@ -1,4 +1,4 @@
-// The selection and the saved selections of an open model.
+// The selection, its strokes and the saved selections of an open model.
 
 import type { ModelSession } from "../../session/model-session";
 import { texts } from "../../texts";
@@ -6,6 +6,8 @@ import { notices } from "../../ui/notices";
 import { SavedSelections } from "./saved-selections";
 import { Selection } from "./selection";
 import { isOutline, kMostParts, stepsOf } from "./selection-steps";
+import type { SharpFrame } from "./sharp-frame";
+import { Strokes } from "./strokes";
 
 /** Returns the selection of an open model. */
 export const selectionOf = (session: ModelSession): Selection =>
@@ -18,6 +20,24 @@ export const savedSelectionsOf = (session: ModelSession): SavedSelections =>
     canCurate: () => session.canCurate,
     changed: () => session.painting.changed(),
   }));
+
+const kSoonMs = 40; // The browser has drawn the page by then.
+
+/** Makes the strokes of an open model. They find areas in the frame. */
+export function makeStrokes(session: ModelSession, frame: () => SharpFrame | null): Strokes {
+  const { view, painting } = session;
+  return new Strokes({
+    selection: selectionOf(session),
+    frame,
+    camera: () => view.camera.message(),
+    scale: () => view.scale,
+    through: () => painting.brush.through,
+    begin: (at) => painting.beginOutline({ ...at, alt: false }),
+    ended: () => painting.strokeEnded(),
+    later: (callback) => void setTimeout(callback, kSoonMs),
+    changed: () => painting.changed(),
+  });
+}
 
 function makeSelection(session: ModelSession): Selection {
   const { api, lit, view, layers, painting, modelId: model } = session;

@@ -1,5 +1,5 @@
 // <strata-selection-panel>: the keys of the selection, and the saved selections, in the options of
-// polygon, lasso and wand. While an area is selected, also the values of the layer inside it.
+// polygon, lasso, wand and strokes. While an area is selected, also the values of the layer inside it.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -20,7 +20,7 @@ export class StrataSelectionPanel extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "painting", "layers", "tables");
+    followSession(this, "painting", "tools", "layers", "tables");
   }
 
   static override styles = [sharedStyles, selectionFactStyles];
@@ -29,8 +29,9 @@ export class StrataSelectionPanel extends LitElement {
     const { session } = this;
     const { measured } = selectionOf(session);
     const layer = session.layers.selected;
+    const { keys } = session.tools.active === "strokes" ? texts.strokes : words;
     return html`${measured && layer ? selectionFacts(session, layer, measured) : nothing}
-      <p class="hint">${words.keys}</p>
+      <p class="hint">${keys}</p>
       <button class="quiet" @click=${this.showSaved}>${icon("layers")}${words.saved}</button>`;
   }
 

@@ -1,4 +1,4 @@
-// The area that polygon, lasso and wand select together. It consists of parts that are combined in
+// The area that polygon, lasso, wand and strokes select together. It consists of parts that are combined in
 // their order, and of changes to its border. The points of an outline are pixels in the window of
 // the camera with which it was drawn. The 3D view highlights the area until it is painted, erased or
 // discarded. Corners of an outline can be moved while the 3D view shows the view of this outline.
@@ -91,6 +91,8 @@ export class Selection implements FinishedOutlines {
   private _future: Steps[] = [];
   private _before: Steps | null = null; // the steps before the drag of a corner
   private _clicked: { part: SelectionPart; at: Like["at"] } | null = null; // by the wand
+  // an area that can still be replaced, the steps without it, and how it is combined with them
+  private _proposal: { before: Steps; steps: Steps; combine: Combination | null } | null = null;
   private _accepted: Steps = []; // the last steps that the server has measured
   private _asked = 0;
   private _asking = false;
@@ -122,6 +124,7 @@ export class Selection implements FinishedOutlines {
 
   /** Returns whether another part would exceed the limits, after showing this to the user. */
   refusesMore(keys: HeldKeys): boolean {
+    if (this.isProposed) return false; // the next area replaces the proposed one
     const refused = !fitsRequest(this.with({ where: "true" }, keys));
     if (refused) this._host.full();
     return refused;
@@ -144,8 +147,41 @@ export class Selection implements FinishedOutlines {
 
   /** Adds a saved selection. Its steps can be removed one by one if it replaces the selection. */
   addSaved(within: Within, keys: HeldKeys = {}): void {
+    this.acceptProposed();
     if (this.combination(keys) === null) this.put(stepsOf(within));
     else if (!this.refusesMore(keys)) this.addPart(within, keys);
+  }
+
+  /**
+   * Selects an area as the next part, or replaces the proposed one. Null removes the proposed one.
+   * The keys and the mode at the first area apply until the proposal is accepted.
+   */
+  propose(within: Within | null, keys: HeldKeys = {}): void {
+    const known = this.isProposed ? this._proposal : null;
+    if (!within && !known) return;
+    const before = known?.before ?? this.steps;
+    if (known && this._past[this._past.length - 1] === before) this._past.pop();
+    this._proposal = null;
+    if (!within) {
+      this.active = null;
+      this.steps = before;
+      this.measure();
+      return;
+    }
+    const combine = known ? known.combine : this.combination(keys);
+    this.steps = before;
+    this.put(this.combined(within, combine));
+    this._proposal = { before, steps: this.steps, combine };
+  }
+
+  /** Whether the last part is a proposed area. */
+  get isProposed(): boolean {
+    return this._proposal?.steps === this.steps;
+  }
+
+  /** Keeps the proposed area, so the next one does not replace it. */
+  acceptProposed(): void {
+    this._proposal = null;
   }
 
   /** Grows the area by this distance. A negative distance shrinks it. */
@@ -179,7 +215,11 @@ export class Selection implements FinishedOutlines {
   }
 
   private with(within: Within, keys: HeldKeys, corners = false): Steps {
-    const combine = this.combination(keys);
+    return this.combined(within, this.combination(keys), corners);
+  }
+
+  /** Returns the steps with another part. It replaces them if `combine` is null. */
+  private combined(within: Within, combine: Combination | null, corners = false): Steps {
     const part = { combine: combine ?? "add", within, ...(corners ? { corners } : {}) };
     return combine ? [...this.steps, part] : [part];
   }

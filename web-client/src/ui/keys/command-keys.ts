@@ -10,6 +10,7 @@ export const kCommandKeys = {
   "tool.eraser": ["E"],
   "tool.polygon": ["A"],
   "tool.lasso": ["L"],
+  "tool.strokes": ["Shift+L"],
   "polygon.snap": ["Shift+A"],
   "tool.bucket": ["G"],
   "tool.wand": ["Shift+G"],
