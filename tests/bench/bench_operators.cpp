@@ -22,9 +22,12 @@
 #include "query/regions/border_line.h"
 #include "query/regions/distance_values.h"
 #include "query/regions/focal.h"
+#include "query/regions/hysteresis.h"
+#include "query/regions/line_depth.h"
 #include "query/regions/majority.h"
 #include "query/regions/open_close.h"
 #include "query/regions/region_pieces.h"
+#include "query/regions/run_off.h"
 #include "query/regions/sieve.h"
 #include "query/regions/watershed.h"
 #include "support/surfaces.h"
@@ -210,6 +213,24 @@ std::vector<Operator> operators() {
       {"greatest value, 0.5 %", false, focal(query::Focal::max, false, 0.005)},
       {"variety, 0.5 %", false, focal(query::Focal::variety, true, 0.005)},
       {"hot spots, 0.5 %", false, focal(query::Focal::hot_spot, false, 0.005)},
+      {"cracks (valley), 0.2 %", false,
+       [=](const Subject& on, Progress& progress) {
+         return must(query::line_depth_values(query::Line::valley, on.numbers, ValueType::f32,
+                                              0.002 * on.side, on.map, on.graph, "width", progress,
+                                              threads));
+       }},
+      {"hysteresis", true,
+       [=](const Subject& on, Progress& progress) {
+         return must(query::hysteresis_values(on.numbers, ValueType::f32, {0.5, 1.0}, on.map,
+                                              on.graph, progress));
+       }},
+      {"run-off", false,
+       [=](const Subject& on, Progress& progress) {
+         const std::vector<std::uint64_t> no_drips(on.map.block_of_slot.size(), 0);
+         return must(query::run_off(on.numbers, ValueType::f32, {0, 0, 1}, no_drips, on.map,
+                                    on.graph, progress))
+             .passing;
+       }},
       {"watershed", false,
        [=](const Subject& on, Progress& progress) {
          auto basins = must(query::watershed_values(on.numbers, ValueType::f32, 0.2, on.map,

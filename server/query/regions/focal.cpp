@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -145,20 +144,11 @@ class RowParts {
   std::vector<Part> parts_, of_block_;
 };
 
-// Returns the area of the texels of a slot with these bits.
-double area_of(const mesh::SurfaceMap& map, std::uint32_t slot, std::uint64_t bits) {
-  if (bits == map.surface_mask[slot]) return map.sums_of_slot[slot].area;
-  double area = 0;
-  for (std::uint64_t left = bits; left != 0; left &= left - 1)
-    area += double{map.area[slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left))]};
-  return area;
-}
-
 // Adds the texels of a disc with add_texels(slot, bits) and add_chord(y, x0, x1). `clear` takes
 // back what was added.
 template <class Chord, class Texels, class Clear>
-void add_disc(const Input& input, TexelDiscs& discs, double disc_area, std::uint32_t texel,
-              Chord add_chord, Texels add_texels, Clear clear) {
+void add_disc(const Input& input, TexelDiscs& discs, std::uint32_t texel, Chord add_chord,
+              Texels add_texels, Clear clear) {
   clear();
   if (discs.for_each_chord(texel, [&](int y, int x0, int x1) {
         if (!input.rows.are_connected(y, x0, x1)) return false;
@@ -167,22 +157,7 @@ void add_disc(const Input& input, TexelDiscs& discs, double disc_area, std::uint
       }))
     return;
   clear();
-  double area = 0;
-  discs.balls().for_each_block(texel, [&](std::uint32_t slot, std::uint64_t bits) {
-    area += area_of(input.map, slot, bits);
-    add_texels(slot, bits);
-  });
-  // A ball with more surface than a disc reaches through a fold.
-  constexpr double kFolded = 1.1;
-  if (area <= kFolded * disc_area) return;
-  clear();
-  discs.balls().for_each_block_on_paths(texel, add_texels);
-}
-
-// Returns the area of the texels in a flat disc, with some more at its rim.
-double disc_area(const mesh::SurfaceMap& map, double radius) {
-  const double outer = radius + mean_texel_size(map) / 2;
-  return std::numbers::pi * outer * outer;
+  for (const auto& [slot, bits] : discs.blocks_around(texel)) add_texels(slot, bits);
 }
 
 template <class Part>
@@ -190,16 +165,12 @@ class PartDiscs {
  public:
   PartDiscs(const Input& input, const RowParts<Part>& parts, const mesh::TexelGraph& graph,
             double radius)
-      : input_(input),
-        parts_(parts),
-        discs_(input.map, graph, radius),
-        disc_area_(disc_area(input.map, radius)) {}
+      : input_(input), parts_(parts), discs_(input.map, graph, radius) {}
 
   Part part_at(std::uint32_t texel) {
     Part part;
     add_disc(
-        input_, discs_, disc_area_, texel,
-        [&](int y, int x0, int x1) { parts_.add_chord(y, x0, x1, part); },
+        input_, discs_, texel, [&](int y, int x0, int x1) { parts_.add_chord(y, x0, x1, part); },
         [&](std::uint32_t slot, std::uint64_t bits) { parts_.add_texels(slot, bits, part); },
         [&] { part = {}; });
     return part;
@@ -210,17 +181,16 @@ class PartDiscs {
   const Input& input_;
   const RowParts<Part>& parts_;
   TexelDiscs discs_;
-  const double disc_area_;
 };
 
 class VarietyDiscs {
  public:
   VarietyDiscs(const Input& input, const mesh::TexelGraph& graph, double radius)
-      : input_(input), discs_(input.map, graph, radius), disc_area_(disc_area(input.map, radius)) {}
+      : input_(input), discs_(input.map, graph, radius) {}
 
   std::optional<float> at(std::uint32_t texel) {
     add_disc(
-        input_, discs_, disc_area_, texel,
+        input_, discs_, texel,
         [&](int y, int x0, int x1) {
           input_.rows.for_each_run(y, x0, x1, [&](const TexelValue& value, std::uint32_t area) {
             if (value.valid) found_.add(value, area);
@@ -239,7 +209,6 @@ class VarietyDiscs {
  private:
   const Input& input_;
   TexelDiscs discs_;
-  const double disc_area_;
   ValueAreas found_;
 };
 

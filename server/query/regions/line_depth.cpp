@@ -9,7 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,10 +65,7 @@ class Neighborhood {
       : input_(input),
         discs_(input.map, input.graph, radius),
         area_scale_(static_cast<float>(static_cast<double>(input.map.surface_texels) /
-                                       input.map.area_total)) {
-    const double outer = radius + mean_texel_size(input.map) / 2;
-    disc_area_ = std::numbers::pi * outer * outer;
-  }
+                                       input.map.area_total)) {}
 
   void collect(std::uint32_t texel) {
     middle_ = texel;
@@ -115,22 +111,14 @@ class Neighborhood {
 
   void collect_near_seam() {
     clear();
-    double found = 0;
-    discs_.for_each_in_ball(middle_, [&](std::uint32_t texel) {
-      found += double{input_.map.area[texel]};
-      add_texel(texel);
-    });
-    // A ball with more surface than a disc reaches through a fold.
-    constexpr double kFolded = 1.1;
-    if (found <= kFolded * disc_area_) return;
-    clear();
-    discs_.for_each_on_paths(middle_, [&](std::uint32_t texel) { add_texel(texel); });
+    for (const auto& [slot, bits] : discs_.blocks_around(middle_))
+      for (std::uint64_t left = bits; left != 0; left &= left - 1)
+        add_texel(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left)));
   }
 
   const Input& input_;
   TexelDiscs discs_;
   const float area_scale_;
-  double disc_area_ = 0;
   std::uint32_t middle_ = 0;
 };
 

@@ -33,13 +33,12 @@ class Neighbourhoods {
     if (!discs_.for_each_chord(
             texel, [&](int y, int x0, int x1) { return rows_.for_each_run(y, x0, x1, add); })) {
       areas_.clear();
-      discs_.balls().for_each_block(texel, [&](std::uint32_t slot, std::uint64_t bits) {
+      for (const auto& [slot, bits] : discs_.balls().around(texel))
         for (std::uint64_t left = bits; left != 0; left &= left - 1) {
           const std::uint32_t other =
               slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left));
           add(values_.of(other), rows_.area(other));
         }
-      });
     }
     return areas_.largest(values_.of(texel));
   }

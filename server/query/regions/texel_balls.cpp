@@ -32,6 +32,25 @@ TexelBalls::TexelBalls(const mesh::SurfaceMap& map, const mesh::TexelGraph& grap
       max_blocks_(256 + max_texels / 16),
       table_(std::bit_ceil(2 * max_blocks_), kNone) {}
 
+std::span<const BlockTexels> TexelBalls::around(std::uint32_t start) {
+  fill(start);
+  found_.clear();
+  for (const std::uint32_t index : touched_)
+    if (const Block& block = blocks_[index]; block.reached != 0)
+      found_.push_back({block.slot, block.reached});
+  return found_;
+}
+
+std::span<const BlockTexels> TexelBalls::on_paths(std::uint32_t start) {
+  fill(start);
+  walk(start);
+  found_.clear();
+  for (const std::uint32_t index : touched_)
+    if (const Block& block = blocks_[index]; block.walked != 0)
+      found_.push_back({block.slot, block.walked});
+  return found_;
+}
+
 void TexelBalls::forget() {
   blocks_.clear();
   std::ranges::fill(table_, kNone);

@@ -3,12 +3,19 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "mesh/texels/texel_graph.h"
 
 namespace strata::query {
+
+// Some texels of a block of the map.
+struct BlockTexels {
+  std::uint32_t slot;
+  std::uint64_t bits;
+};
 
 // The connected texels in a ball around a texel, as bits of the blocks of 8 × 8 texels of the map.
 // Distances are straight through space. Only texels count that are connected within the ball.
@@ -22,24 +29,13 @@ class TexelBalls {
   TexelBalls(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, double radius,
              std::size_t max_texels);
 
-  // Calls visit(slot, bits) for each block with texels in the ball.
-  template <class Visit>
-  void for_each_block(std::uint32_t start, Visit&& visit) {
-    fill(start);
-    for (const std::uint32_t index : touched_)
-      if (const Block& block = blocks_[index]; block.reached != 0) visit(block.slot, block.reached);
-  }
+  // Returns the blocks with texels in the ball. They are valid until the next call.
+  std::span<const BlockTexels> around(std::uint32_t start);
 
-  // The same for the texels to which a path within the ball leads that is at most the radius long.
+  // Returns only the texels to which a path within the ball leads that is at most the radius long.
   // So it does not reach the other side of a fold or of a thin wall. Paths have steps like those of
-  // a king in chess, so they may be up to 8 % longer. Takes about twenty times as long.
-  template <class Visit>
-  void for_each_block_on_paths(std::uint32_t start, Visit&& visit) {
-    fill(start);
-    walk(start);
-    for (const std::uint32_t index : touched_)
-      if (const Block& block = blocks_[index]; block.walked != 0) visit(block.slot, block.walked);
-  }
+  // a king in chess, so they may be up to 8 % longer. Takes about fifty times as long.
+  std::span<const BlockTexels> on_paths(std::uint32_t start);
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu, kUnknown = 0xfffffffeu;
@@ -84,6 +80,7 @@ class TexelBalls {
   std::uint64_t ball_ = 0;
   std::size_t texels_ = 0;  // in the current ball
   std::vector<std::uint32_t> touched_, queue_;
+  std::vector<BlockTexels> found_;
   std::vector<std::pair<float, std::uint32_t>> open_;  // length and 64 * index + i: a heap
 };
 

@@ -1,5 +1,7 @@
 #include "query/regions/texel_discs.h"
 
+#include <bit>
+#include <cmath>
 #include <numbers>
 
 namespace strata::query {
@@ -24,10 +26,29 @@ TexelDiscs::TexelDiscs(const mesh::SurfaceMap& map, const mesh::TexelGraph& grap
       graph_(graph),
       radius_(radius * kRim),
       texels_in_radius_(radius / mean_texel_size(map)),
+      // of the texels in a flat disc, with some more at its rim
+      disc_area_(std::numbers::pi * std::pow(radius + mean_texel_size(map) / 2, 2)),
       // At places where texels are much smaller than the mean
       balls_(map, graph, radius_,
              256 + static_cast<std::size_t>(4 * std::numbers::pi * texels_in_radius_ *
                                             texels_in_radius_)) {}
+
+std::span<const BlockTexels> TexelDiscs::blocks_around(std::uint32_t texel) {
+  const auto found = balls_.around(texel);
+  double area = 0;
+  for (const BlockTexels& block : found) area += area_of(block);
+  // A ball with more surface than a disc reaches through a fold.
+  constexpr double kFolded = 1.1;
+  return area <= kFolded * disc_area_ ? found : balls_.on_paths(texel);
+}
+
+double TexelDiscs::area_of(const BlockTexels& block) const {
+  if (block.bits == map_.surface_mask[block.slot]) return map_.sums_of_slot[block.slot].area;
+  double area = 0;
+  for (std::uint64_t left = block.bits; left != 0; left &= left - 1)
+    area += double{map_.area[block.slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left))]};
+  return area;
+}
 
 std::uint32_t TexelDiscs::walk(std::uint32_t texel, Way way, int steps) const {
   for (int i = 0; i < steps && texel != kNoNeighbour; ++i)

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -71,7 +72,12 @@ class TexelDiscs {
     return true;
   }
 
-  // The connected texels in a ball, for places where for_each_chord returns false.
+  // For places where for_each_chord returns false. Returns the connected texels in a ball. At a
+  // fold or a thin wall, where a ball reaches too much surface, returns those on paths within the
+  // ball (TexelBalls::on_paths). They are valid until the next call.
+  std::span<const BlockTexels> blocks_around(std::uint32_t texel);
+
+  // The connected texels in balls, also at folds.
   TexelBalls& balls() { return balls_; }
 
  private:
@@ -94,13 +100,14 @@ class TexelDiscs {
   glm::dvec3 place(std::uint32_t texel) const {
     return glm::dvec3(map_.position(texel / 64, static_cast<int>(texel % 64)));
   }
+  double area_of(const BlockTexels& block) const;
   std::uint32_t walk(std::uint32_t texel, mesh::Way way, int steps) const;
   std::optional<Ellipse> ellipse_around(std::uint32_t texel) const;
   bool are_connected(const Chord& a, const Chord& b, int y_of_a, int y_of_b) const;
 
   const mesh::SurfaceMap& map_;
   const mesh::TexelGraph& graph_;
-  const double radius_, texels_in_radius_;
+  const double radius_, texels_in_radius_, disc_area_;
   TexelBalls balls_;
 };
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "support/cut_shapes.h"
@@ -18,19 +19,18 @@ namespace {
 
 using Texels = std::set<std::uint32_t>;
 
-Texels texels_of(const auto& for_each_block) {
+Texels texels_of(std::span<const BlockTexels> blocks) {
   Texels texels;
-  for_each_block([&](std::uint32_t slot, std::uint64_t bits) {
+  for (auto [slot, bits] : blocks)
     for (; bits != 0; bits &= bits - 1) {
       const bool fresh =
           texels.insert(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(bits))).second;
       EXPECT_TRUE(fresh);
     }
-  });
   return texels;
 }
 
-glm::dvec3 place(const test::Surface& surface, std::uint32_t texel) {
+glm::dvec3 place_of(const test::Surface& surface, std::uint32_t texel) {
   return glm::dvec3(surface.map.position(texel / 64, static_cast<int>(texel % 64)));
 }
 
@@ -41,7 +41,7 @@ Texels search(const test::Surface& surface, std::uint32_t start, double radius) 
     const std::uint32_t texel = open.back();
     open.pop_back();
     mesh::for_each_neighbour(surface.map, surface.graph, texel, [&](std::uint32_t other) {
-      if (glm::distance(place(surface, other), place(surface, start)) > radius) return;
+      if (glm::distance(place_of(surface, other), place_of(surface, start)) > radius) return;
       if (found.insert(other).second) open.push_back(other);
     });
   }
@@ -59,7 +59,8 @@ std::map<std::uint32_t, double> paths(const test::Surface& surface, const Texels
       const double length = lengths[texel];
       const auto step_to = [&](std::uint32_t other) {
         if (!ball.contains(other)) return;
-        const double path = length + glm::distance(place(surface, texel), place(surface, other));
+        const double path =
+            length + glm::distance(place_of(surface, texel), place_of(surface, other));
         const auto [known, fresh] = lengths.try_emplace(other, path);
         if (!fresh && path >= known->second - 1e-9) return;
         known->second = path;
@@ -100,22 +101,19 @@ TEST(TexelBalls, equal_a_search_of_texels) {
       std::size_t several_blocks = 0, number = 0;
       test::for_each_surface_texel(surface.map, [&](std::uint32_t start) {
         if (++number % 97 != 0) return;
-        std::size_t blocks = 0;
-        const Texels found = texels_of([&](const auto& visit) {
-          balls.for_each_block(start, [&](std::uint32_t slot, std::uint64_t bits) {
-            ++blocks;
-            visit(slot, bits);
-          });
-        });
-        several_blocks += blocks > 1 ? 1 : 0;
+        const auto blocks = balls.around(start);
+        several_blocks += blocks.size() > 1 ? 1 : 0;
+        const Texels found = texels_of(blocks);
         const Texels expected = search(surface, start, radius);
         // Texels at the rim differ by rounding.
         for (const std::uint32_t texel : expected)
           ASSERT_TRUE(found.contains(texel) ||
-                      glm::distance(place(surface, texel), place(surface, start)) > radius * 0.9999)
+                      glm::distance(place_of(surface, texel), place_of(surface, start)) >
+                          radius * 0.9999)
               << cuts.columns << ' ' << radius << ' ' << start;
         for (const std::uint32_t texel : found)
-          ASSERT_LE(glm::distance(place(surface, texel), place(surface, start)), radius * 1.0001);
+          ASSERT_LE(glm::distance(place_of(surface, texel), place_of(surface, start)),
+                    radius * 1.0001);
         ASSERT_NEAR(static_cast<double>(found.size()), static_cast<double>(expected.size()), 4);
       });
       EXPECT_GT(several_blocks, 0u);
@@ -130,8 +128,7 @@ TEST(TexelBalls, follow_paths_around_a_fold) {
     std::size_t number = 0, shorter = 0;
     test::for_each_surface_texel(surface.map, [&](std::uint32_t start) {
       if (++number % 1499 != 0) return;
-      const Texels found =
-          texels_of([&](const auto& visit) { balls.for_each_block_on_paths(start, visit); });
+      const Texels found = texels_of(balls.on_paths(start));
       const Texels ball = search(surface, start, kRadius);
       const auto lengths = paths(surface, ball, start);
       for (const auto& [texel, length] : lengths) {
@@ -149,7 +146,7 @@ TEST(TexelBalls, end_after_the_greatest_number_of_texels) {
   TexelBalls balls(surface.map, surface.graph, 1000, 500);
   test::for_each_surface_texel(surface.map, [&](std::uint32_t start) {
     if (start % 997 != 0) return;
-    const Texels found = texels_of([&](const auto& visit) { balls.for_each_block(start, visit); });
+    const Texels found = texels_of(balls.around(start));
     EXPECT_TRUE(found.contains(start));
     EXPECT_LE(found.size(), 500u + 64u);
   });
