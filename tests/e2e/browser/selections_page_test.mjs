@@ -307,6 +307,62 @@ test("strokes inside and outside find a sherd, are undone, accepted and painted"
   await page.keyboard.press("l");
 });
 
+test("on a layer of records, a selection becomes a record, and finds its records", async () => {
+  await server.json("POST", `${base}/layers`, {
+    name: "Finds",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    columns: [{ name: "Name", required: true }],
+    palette: { mode: "categorical", points: [{ at: 1, color: "#2c6a63" }] },
+  });
+  await server.json("POST", "/tables/finds/records", { values: { name: "Elsewhere" } });
+  await button(words.layers.select("Finds")).click();
+  await page.keyboard.press("a");
+  await polygon([
+    [0.4, 0.55],
+    [0.5, 0.55],
+    [0.5, 0.65],
+    [0.4, 0.65],
+  ]);
+  const area_m2 = await other_than(null, "the polygon");
+  await from_menu(words.selection.new_record);
+  const form = page.locator("strata-record-dialog");
+  await form.getByLabel("Name").fill("Spiral");
+  await shot("record");
+  await form.getByRole("button", { name: words.save, exact: true }).click();
+  await form.waitFor({ state: "detached" });
+  await selection().waitFor({ state: "detached" });
+  await browser.saved();
+  const spiral = await wait_for(async () => {
+    const { records } = await server.json("GET", `${base}/layers/finds/records`);
+    const found = records.find(({ values }) => values.name === "Spiral");
+    return found?.area_m2 > 0 ? found : null;
+  }, "the painted record");
+  assert.ok(Math.abs(spiral.area_m2 / area_m2 - 1) < 0.02, `${spiral.area_m2}, not ${area_m2} m²`);
+  await polygon([
+    [0.45, 0.6],
+    [0.6, 0.6],
+    [0.6, 0.7],
+  ]);
+  await other_than(null, "the second polygon");
+  await from_menu(words.selection.show_records);
+  const table = page.locator("strata-table-panel");
+  await table.getByText("Spiral").waitFor();
+  assert.equal(
+    await table.getByRole("textbox", { name: words.tables.filter }).inputValue(),
+    `key in (${spiral.key})`,
+  );
+  assert.equal(await table.getByText("Elsewhere").count(), 0);
+  await shot("records");
+  await page.keyboard.press("Escape");
+  await table.getByRole("button", { name: words.tables.close }).click();
+  await table.waitFor({ state: "detached" });
+  await page.locator("strata-stage .surface").focus();
+  await page.keyboard.press("Escape");
+  await selection().waitFor({ state: "detached" });
+});
+
 test("it is renamed and deleted in the list", async () => {
   await button(words.selection.saved).click();
   const options = (name) => row(name).getByRole("button", { name: words.layers.options(name) });

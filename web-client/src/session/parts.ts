@@ -52,6 +52,8 @@ export interface TablesPart {
   open(layer: Layer): void;
   /** Scrolls to the record's row in the table of its layer. */
   showRow(layer: Layer, key: number): void;
+  /** Opens the table of the layer with these records only. */
+  showRows(layer: Layer, keys: readonly number[]): void;
   /** Undoes or redoes this user's latest change to the table. */
   undo(table: number): Promise<void>;
   redo(table: number): Promise<void>;

@@ -6,9 +6,17 @@ import type { Layer } from "../core/types";
 /** The dialog that imports terms. `table` is the list to import into. Null makes a new list. */
 export type TermsRequest = { dialog: "terms"; table: number | null; file: File | null };
 
+/** The form of a record. If `key` is null, it makes a record and calls `made` with its key. */
+export interface RecordRequest {
+  dialog: "record";
+  layer: Layer;
+  key: number | null;
+  made?: (key: number) => void;
+}
+
 export type TablePanelRequest =
   | TermsRequest
-  | { dialog: "record"; layer: Layer; key: number | null }
+  | RecordRequest
   | { dialog: "delete-record"; layer: Layer; key: number }
   | { dialog: "column"; table: number; column: Column | null }
   | { dialog: "csv"; table: number; file: File }

@@ -338,7 +338,7 @@ export class StrataModelPage extends LitElement {
           <strata-tool-rail role="toolbar" aria-label=${texts.model.tools} .session=${session}></strata-tool-rail>
         </section>
         <main>
-          <strata-stage .session=${session} @request=${(event: CustomEvent<SelectionRequest>) => (this._dialog = event.detail)}></strata-stage>
+          <strata-stage .session=${session} @request=${(event: CustomEvent<SelectionRequest | TablePanelRequest>) => (this._dialog = event.detail)}></strata-stage>
           ${session.past.isOpen && hasPart("past", this) ? html`<strata-past-overlay .session=${session}></strata-past-overlay>` : nothing}
           ${this.surveys(session)}
           <strata-together-bar .session=${session}></strata-together-bar>

@@ -92,6 +92,7 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
         .session=${session}
         .layer=${newest(session, dialog.layer)}
         .key=${dialog.key}
+        .made=${dialog.made ?? null}
         @closed=${closed}
       ></strata-record-dialog>`;
     case "delete-record":

@@ -712,6 +712,11 @@ export const laterTexts = {
     more: "Mehr zur Auswahl",
     undo: "Änderung der Auswahl rückgängig machen",
     redo: "Änderung der Auswahl wiederherstellen",
+    new_record: "Neuer Datensatz aus der Auswahl…",
+    show_records: "Ihre Datensätze in der Tabelle zeigen",
+    no_records: (layer) => `Die Auswahl enthält keinen Datensatz von „${layer}“.`,
+    most_records: (n) =>
+      `Die Tabelle zeigt die ${formatCount(n)} Datensätze mit den größten Flächen in der Auswahl.`,
     statistics: "Statistik",
     statistics_title: "Statistik der Auswahl",
     save: "Auswahl speichern …",

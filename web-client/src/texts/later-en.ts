@@ -704,6 +704,11 @@ export const laterTexts = {
     more: "More for the selection",
     undo: "Undo change of the selection",
     redo: "Redo change of the selection",
+    new_record: "New record from the selection…",
+    show_records: "Show its records in the table",
+    no_records: (layer: string) => `The selection contains no record of “${layer}”.`,
+    most_records: (n: number) =>
+      `The table shows the ${formatCount(n)} records with the largest areas in the selection.`,
     statistics: "Statistics",
     statistics_title: "Statistics of the selection",
     save: "Save selection…",

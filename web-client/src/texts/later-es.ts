@@ -705,6 +705,11 @@ export const laterTexts = {
     more: "Más para la selección",
     undo: "Deshacer el cambio de la selección",
     redo: "Rehacer el cambio de la selección",
+    new_record: "Nuevo registro a partir de la selección…",
+    show_records: "Mostrar sus registros en la tabla",
+    no_records: (layer) => `La selección no contiene ningún registro de «${layer}».`,
+    most_records: (n) =>
+      `La tabla muestra los ${formatCount(n)} registros con las áreas más grandes en la selección.`,
     statistics: "Estadísticas",
     statistics_title: "Estadísticas de la selección",
     save: "Guardar selección…",

@@ -6,12 +6,16 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { formatPercent } from "../../core/locale";
+import type { KeyStatistics } from "../../core/protocol.gen";
+import type { Layer } from "../../core/types";
+import { labelOf } from "../../domain/cells";
 import { formatArea, formatNumber } from "../../domain/measure";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
-import type { SelectionRequest } from "../../session/requests";
+import type { SelectionRequest, TablePanelRequest } from "../../session/requests";
 import { icon, type IconName } from "../../ui/icons";
 import "../../ui/menu";
+import { notices } from "../../ui/notices";
 import { radioGroup } from "../../ui/radio-group";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
@@ -24,6 +28,14 @@ import type { Strokes } from "./strokes";
 const words = texts.selection;
 const kModes: readonly SelectionMode[] = ["replace", "add", "subtract", "intersect"];
 const kSteps = 120;
+const kMostRecords = 300; // The filter of a table has at most 4096 characters.
+
+type MenuItem = (
+  glyph: IconName,
+  title: string,
+  act: () => void,
+  disabled?: boolean,
+) => TemplateResult;
 
 @customElement("strata-selection-bar")
 export class StrataSelectionBar extends LitElement {
@@ -31,7 +43,7 @@ export class StrataSelectionBar extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "painting", "tools", "layers", "lit");
+    followSession(this, "painting", "tools", "layers", "tables", "lit");
   }
 
   static override styles = [
@@ -194,17 +206,13 @@ export class StrataSelectionBar extends LitElement {
   }
 
   private menu(selection: Selection, strokes: Strokes | null): TemplateResult {
-    const item = (
-      glyph: IconName,
-      title: string,
-      act: () => void,
-      disabled = false,
-    ): TemplateResult =>
+    const item: MenuItem = (glyph, title, act, disabled = false) =>
       html`<button class="quiet" role="menuitem" ?disabled=${disabled} @click=${act}>${icon(glyph)}${title}</button>`;
     const drawn = texts.strokes;
     return html`<strata-menu label=${words.more}>
       ${strokes?.isOpen ? item("undo", drawn.undo, () => strokes.undo()) : item("undo", words.undo, () => selection.undo(), !selection.canUndo)}
       ${strokes?.isOpen ? item("redo", drawn.redo, () => strokes.redo(), !strokes.canRedo) : item("redo", words.redo, () => selection.redo(), !selection.canRedo)}
+      ${this.recordItems(selection, item)}
       <hr />
       ${item("chart", words.statistics, () => this.request("selection-statistics"))}
       ${item("plus", words.save, () => this.request("save-selection"))}
@@ -212,10 +220,45 @@ export class StrataSelectionBar extends LitElement {
     </strata-menu>`;
   }
 
+  /** Renders the items for a layer of records. */
+  private recordItems(selection: Selection, item: MenuItem): TemplateResult | typeof nothing {
+    const layer = this.session.layers.selected;
+    if (layer?.table === undefined) return nothing;
+    const { measured, busy } = selection;
+    const found = measured?.layers[layer.slug]?.keys;
+    const isTerms = this.session.tables.find(layer.table)?.kind === "terms";
+    return html`<hr />
+      ${isTerms ? nothing : item("plus", words.new_record, () => this.makeRecord(selection, layer), busy)}
+      ${item("table", words.show_records, () => this.showRecords(layer, found ?? []), !found)}`;
+  }
+
+  /** Opens the form of a new record. When it is saved, the selection is painted with the record. */
+  private makeRecord(selection: Selection, layer: Layer): void {
+    const { painting } = this.session;
+    if (!painting.areaTarget(true)) return;
+    const made = (key: number): void => {
+      painting.setBrush((brush) => brush.setValue(layer, key));
+      if (this.session.layers.selected?.id === layer.id) void selection.paint(false);
+    };
+    this.send({ dialog: "record", layer, key: null, made });
+  }
+
+  /** Shows the records in the selection, those with the largest areas first if there are many. */
+  private showRecords(layer: Layer, found: readonly KeyStatistics[]): void {
+    const keys = [...found].sort((a, b) => b.area_m2 - a.area_m2).map(({ key }) => key);
+    if (keys.length === 0) notices.show("info", words.no_records(labelOf(layer)));
+    else this.session.tables.showRows(layer, keys.slice(0, kMostRecords));
+    if (keys.length > kMostRecords) notices.show("info", words.most_records(kMostRecords));
+  }
+
   private request(dialog: SelectionRequest["dialog"]): void {
+    this.send({ dialog });
+  }
+
+  private send(detail: SelectionRequest | TablePanelRequest): void {
     this.dispatchEvent(
-      new CustomEvent<SelectionRequest>("request", {
-        detail: { dialog },
+      new CustomEvent<SelectionRequest | TablePanelRequest>("request", {
+        detail,
         bubbles: true,
         composed: true,
       }),

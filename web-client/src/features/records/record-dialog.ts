@@ -29,6 +29,8 @@ export class StrataRecordDialog extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   /** Null for a new record. */
   @property({ attribute: false }) key: number | null = null;
+  /** Called with the key of each record that was made. */
+  @property({ attribute: false }) made: ((key: number) => void) | null = null;
   @state() private _record: TableRecord | null = null; // the loaded version
   @state() private _problem = "";
   @state() private _sending = "";
@@ -292,6 +294,7 @@ export class StrataRecordDialog extends LitElement {
         this._record = made; // after a later refusal, the next attempt uses this record
         session.tables.view?.rows.refresh();
         session.tables.view?.show(made.key);
+        this.made?.(made.key);
       }
       await this.sendFiles(table, this._record!.key);
       if (another) this._record = null;

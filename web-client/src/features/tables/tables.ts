@@ -174,6 +174,12 @@ export class Tables {
     this.view?.show(key);
   }
 
+  /** Opens the table of the layer with these records only. */
+  showRows(layer: Layer, keys: readonly number[]): void {
+    this.open(layer);
+    this.view?.rows.setQuery({ filter: `key in (${keys.join(", ")})` });
+  }
+
   /** Undoes this user's latest change to the table; `redo` repeats it. */
   undo(table: number): Promise<void> {
     return this.turn(table, "undo");

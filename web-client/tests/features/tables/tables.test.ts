@@ -502,6 +502,29 @@ describe("the names of records", () => {
   });
 });
 
+describe("the records of a selection", () => {
+  it("are the only ones in the table of their layer", async () => {
+    const asked: string[] = [];
+    const api = new Api(async (path) => {
+      asked.push(decodeURIComponent(path.replaceAll("+", " ")));
+      return new Response(JSON.stringify({ records: [], total: 0 }));
+    });
+    const tables = new Tables(api, {
+      modelId: "1",
+      project: () => null,
+      highlight: () => {},
+      flyTo: () => {},
+      changed: () => {},
+    });
+    tables.showRows({ id: 8, table: 3, slug: "finds" } as Layer, [12, 5]);
+    tables.view!.rows.row(0);
+    await settle();
+    expect([tables.view?.layerId, tables.view?.rows.filter]).toEqual([8, "key in (12, 5)"]);
+    expect(asked.some((path) => path.includes("filter=key in (12, 5)"))).toBe(true);
+    tables.close();
+  });
+});
+
 describe("the card of a record", () => {
   const layer = { id: 8, table: 3, slug: "finds" } as Layer;
   const picked = (value: number): Picked =>
