@@ -32,9 +32,9 @@ const kLeastRadius = 0.75; // of a stroke at low resolution
 const kTolerance = 0.75; // of the simplified outlines, in pixels of the frame
 
 /**
- * Returns the outlines of the area. Large parts are first. There are none if there are no strokes
- * inside or none outside. `strokes` are in pixels of the frame, where later ones cover earlier ones.
- * Parts and holes of the area that are smaller than a dot of a stroke are left out.
+ * Returns the outlines of the area, with large parts first. The result is empty if all strokes are
+ * on the same side. `strokes` are in pixels of the frame, where later ones cover earlier ones. Parts
+ * and holes of the area that are smaller than a dot of a stroke are left out.
  */
 export function areaOfStrokes(
   frame: SharpFrame,
