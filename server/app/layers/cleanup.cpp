@@ -55,15 +55,6 @@ Result<ReservedRegions> regions_of(const Services& services, const query::Surfac
   return ReservedRegions{std::move(regions), std::move(memory)};
 }
 
-Result<MemoryLedger::Share> reserve_distances(const Services& services,
-                                              const RegionSource& source) {
-  std::uint64_t linked = 0;
-  for (const std::uint64_t bits : source.graph->has_links)
-    linked += static_cast<std::uint64_t>(std::popcount(bits));
-  return services.rooms.memory().reserve(linked * kBytesPerLinkedTexel,
-                                         "distances on the surface of a layer");
-}
-
 Result<query::CleanedValues> painted_border(const Services& services, const RegionSource& target,
                                             const RegionSource& source, const Cleanup& cleanup,
                                             Progress& progress) {
@@ -187,6 +178,15 @@ Result<RegionSource> region_source(const Services& services, room::Room& room, L
   auto snapshot = STRATA_TRY(room.queries().tiles(to_string(layer.id), {}));
   return RegionSource{std::move(layer), std::move(snapshot.tiles), std::move(map),
                       std::move(graph), room.model().metres(),     std::move(memory)};
+}
+
+Result<MemoryLedger::Share> reserve_distances(const Services& services,
+                                              const RegionSource& source) {
+  std::uint64_t linked = 0;
+  for (const std::uint64_t bits : source.graph->has_links)
+    linked += static_cast<std::uint64_t>(std::popcount(bits));
+  return services.rooms.memory().reserve(linked * kBytesPerLinkedTexel,
+                                         "distances on the surface of a layer");
 }
 
 Result<void> check_can_show(const Layer& painted, const Layer& source, const std::string& field) {

@@ -10,6 +10,8 @@
 #include "app/records/painted_keys.h"
 #include "core/log.h"
 #include "mesh/parallel.h"
+#include "query/regions/center_lines.h"
+#include "query/regions/reading_order.h"
 #include "query/regions/region_pieces.h"
 #include "query/statistics/key_areas.h"
 #include "room/edit.h"
@@ -40,8 +42,45 @@ Result<void> check_target(const RegionSource& source, const RegionSource& target
   return edit.apply ? room::check_not_locked(target.layer, edit.author.role) : Result<void>();
 }
 
-store::WriteRecords records_of(const query::Pieces& pieces, const PieceRecords& request,
+// The pieces, and their measures as lines if they were requested.
+struct FoundPieces {
+  query::Pieces pieces;
+  std::vector<query::LineMeasures> lines;
+};
+
+Result<void> measure_as_lines(const Services& services, room::Room& room,
+                              const RegionSource& source, FoundPieces& found, Progress& progress) {
+  std::vector<glm::dvec3> centers;
+  for (const query::Piece& piece : found.pieces.list) centers.push_back(piece.center);
+  const auto order = query::reading_order(centers, up_frame(room.model().up));
+  STRATA_TRY(query::reorder(found.pieces, order, progress));
+  const auto memory = STRATA_TRY(reserve_distances(services, source));
+  progress.begin_stage(0.4, 0.8);
+  found.lines = STRATA_TRY(query::measure_lines(found.pieces, *source.map, *source.graph, progress,
+                                                mesh::background_threads()));
+  return {};
+}
+
+Result<FoundPieces> found_pieces(const Services& services, room::Room& room,
+                                 const RegionSource& source, const PieceRecords& request,
+                                 bool with_measures, Progress& progress) {
+  query::PieceRequest pieces;
+  pieces.of = request.of_bits;
+  pieces.min_area = request.min_area_m2 / (source.metres_per_unit * source.metres_per_unit);
+  pieces.max_pieces = kMaxPieceRecords;
+  if (request.as_lines) pieces.connection = query::Connection::corners;
+  FoundPieces found;
+  progress.begin_stage(0.05, request.as_lines ? 0.4 : 0.8);
+  found.pieces = STRATA_TRY(query::find_pieces(source.values(), pieces, *source.map, *source.graph,
+                                               progress, mesh::background_threads()));
+  if (request.as_lines && with_measures)
+    STRATA_TRY(measure_as_lines(services, room, source, found, progress));
+  return found;
+}
+
+store::WriteRecords records_of(const FoundPieces& found, const PieceRecords& request,
                                double metres_per_unit) {
+  const query::Pieces& pieces = found.pieces;
   const double cm2 = 1e4 * metres_per_unit * metres_per_unit, mm = 1e3 * metres_per_unit;
   // Digits beyond the precision of the measurement would only fill the table.
   const auto rounded = [](double value) { return std::round(value * 1e4) / 1e4; };
@@ -53,6 +92,13 @@ store::WriteRecords records_of(const query::Pieces& pieces, const PieceRecords& 
     if (request.area_cm2) record.values[*request.area_cm2] = rounded(pieces.list[i].area * cm2);
     if (request.perimeter_mm)
       record.values[*request.perimeter_mm] = rounded(pieces.list[i].perimeter * mm);
+    if (request.as_lines) {
+      const query::LineMeasures& line = found.lines[i];
+      if (request.length_mm) record.values[*request.length_mm] = rounded(line.length * mm);
+      if (request.width_mm) record.values[*request.width_mm] = rounded(line.width * mm);
+      if (request.greatest_width_mm)
+        record.values[*request.greatest_width_mm] = rounded(line.greatest_width * mm);
+    }
     write.records.push_back(std::move(record));
   }
   return write;
@@ -208,12 +254,9 @@ Result<CleanupResult> make_piece_records(const Services& services, room::Room& r
   const RegionSource source = STRATA_TRY(region_source(services, room, layer.id)),
                      target = STRATA_TRY(region_source(services, room, pieces.into));
   STRATA_TRY(check_target(source, target, edit));
-  progress.begin_stage(0.05, 0.8);
-  const double m2_per_unit2 = source.metres_per_unit * source.metres_per_unit;
-  const auto found = STRATA_TRY(query::find_pieces(
-      source.values(), {pieces.of_bits, pieces.min_area_m2 / m2_per_unit2, kMaxPieceRecords},
-      *source.map, *source.graph, progress, mesh::background_threads()));
-  if (!edit.apply || found.list.empty()) return counted(found, source.metres_per_unit);
+  const auto found = STRATA_TRY(found_pieces(services, room, source, pieces, edit.apply, progress));
+  if (!edit.apply || found.pieces.list.empty())
+    return counted(found.pieces, source.metres_per_unit);
 
   progress.begin_stage(0.8, 1);
   progress.report(0, "Creating records");
@@ -226,7 +269,7 @@ Result<CleanupResult> make_piece_records(const Services& services, room::Room& r
   if (progress.cancelled()) return cancelled_problem();
   write.dry_run = false;
   const auto change = STRATA_TRY(create_records(services, write, tried.table, user));
-  auto painted = paint_keys(services, room, target, found, change, edit, progress);
+  auto painted = paint_keys(services, room, target, found.pieces, change, edit, progress);
   if (!painted || !painted->applied || painted->keys != change.created)
     return end_unpainted(services, room.model().id, change, edit, std::move(painted));
   if (const auto announced = announce(services, change, user); !announced)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "core/progress.h"
 #include "domain/layers/mask_texels.h"
@@ -55,7 +56,8 @@ Result<Pieces> find_pieces(const SurfaceValues& values, const PieceRequest& requ
                            const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                            Progress& progress, int threads) {
   progress.report(0, "Finding pieces");
-  Regions regions = STRATA_TRY(find_regions(values, map, graph, progress));
+  Regions regions =
+      STRATA_TRY(find_regions(values, map, graph, progress, kMaxRegions, request.connection));
   const auto order = pieces_in_order(regions, request);
   if (order.size() > request.max_pieces)
     return fail(ErrorCode::invalid, "Too many pieces",
@@ -90,6 +92,22 @@ Result<Pieces> find_pieces(const SurfaceValues& values, const PieceRequest& requ
       piece.perimeter = found->second;
   }
   return pieces;
+}
+
+Result<void> reorder(Pieces& pieces, const std::vector<std::uint32_t>& order,
+                     const Progress& progress) {
+  std::vector<std::uint32_t> place(order.size());
+  std::vector<Piece> list;
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    place[order[i]] = i;
+    list.push_back(pieces.list[order[i]]);
+  }
+  pieces.list = std::move(list);
+  for (std::size_t texel = 0; texel < pieces.of_texel.size(); ++texel) {
+    if (texel % (1 << 18) == 0 && progress.cancelled()) return cancelled_problem();
+    if (std::uint32_t& of = pieces.of_texel[texel]; of != kNoRegion) of = place[of];
+  }
+  return {};
 }
 
 }  // namespace strata::query

@@ -12,6 +12,7 @@ struct PieceRequest {
   std::optional<std::uint32_t> of{};  // the value; empty: all values
   double min_area = 0;                // model units²; smaller pieces are left out
   std::size_t max_pieces = 0;
+  Connection connection = Connection::sides;
 };
 
 // A connected area of one value.
@@ -33,5 +34,10 @@ struct Pieces {
 Result<Pieces> find_pieces(const SurfaceValues& values, const PieceRequest& request,
                            const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                            Progress& progress, int threads = 1);
+
+// Puts the pieces in the order of their numbers in `order`, which contains each number once. Fails
+// when cancelled.
+Result<void> reorder(Pieces& pieces, const std::vector<std::uint32_t>& order,
+                     const Progress& progress);
 
 }  // namespace strata::query

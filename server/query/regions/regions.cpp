@@ -6,6 +6,7 @@
 
 #include "mesh/texels/texel_graph.h"
 #include "query/regions/texel_sets.h"
+#include "query/regions/touching_texels.h"
 
 namespace strata::query {
 namespace {
@@ -14,7 +15,7 @@ constexpr std::uint32_t kSlotsAtOnce = 4096;  // between two checks whether the 
 
 // Joins each texel of a slot to its connected texels with the same value.
 void join_slot(std::uint32_t slot, const SurfaceValues& values, const mesh::SurfaceMap& map,
-               const mesh::TexelGraph& graph, TexelSets& sets) {
+               const mesh::TexelGraph& graph, Connection connection, TexelSets& sets) {
   using mesh::Way;
   for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -22,6 +23,12 @@ void join_slot(std::uint32_t slot, const SurfaceValues& values, const mesh::Surf
     const auto join = [&](std::uint32_t other) {
       if (other != mesh::kNoNeighbour && values.same(texel, other)) sets.join(texel, other);
     };
+    if (connection == Connection::corners) {
+      for_each_touching(map, graph, texel, [&](std::uint32_t other) {
+        if (other < texel) join(other);
+      });
+      continue;
+    }
     join(mesh::neighbour(map, graph, texel, Way::right));
     join(mesh::neighbour(map, graph, texel, Way::upper));
     if ((graph.has_links[slot] >> i & 1u) == 0) continue;
@@ -34,7 +41,7 @@ void join_slot(std::uint32_t slot, const SurfaceValues& values, const mesh::Surf
 
 Result<Regions> find_regions(const SurfaceValues& values, const mesh::SurfaceMap& map,
                              const mesh::TexelGraph& graph, const Progress& progress,
-                             std::size_t max_regions) {
+                             std::size_t max_regions, Connection connection) {
   const auto slots = static_cast<std::uint32_t>(map.block_of_slot.size());
   TexelSets sets(std::size_t{slots} * 64);
   const auto for_each_slot = [&](auto&& visit) {
@@ -48,7 +55,9 @@ Result<Regions> find_regions(const SurfaceValues& values, const mesh::SurfaceMap
     for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1)
       sets.add(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left)));
   };
-  const auto join = [&](std::uint32_t slot) { join_slot(slot, values, map, graph, sets); };
+  const auto join = [&](std::uint32_t slot) {
+    join_slot(slot, values, map, graph, connection, sets);
+  };
   if (!for_each_slot(add) || !for_each_slot(join)) return cancelled_problem();
 
   Regions regions{std::move(sets).take_parents(), {}};

@@ -32,6 +32,12 @@ struct Region {
   double area = 0;  // model units²
 };
 
+// Which texels are connected to each other.
+enum class Connection {
+  sides,
+  corners,  // also those that touch only at a corner (touching_texels.h)
+};
+
 struct Regions {
   std::vector<std::uint32_t> of_texel;  // kNoRegion for a texel that is not on the surface
   std::vector<Region> list;             // ascending by `first_texel`
@@ -42,7 +48,8 @@ struct Regions {
 // `max_regions` regions.
 Result<Regions> find_regions(const SurfaceValues& values, const mesh::SurfaceMap& map,
                              const mesh::TexelGraph& graph, const Progress& progress,
-                             std::size_t max_regions = kMaxRegions);
+                             std::size_t max_regions = kMaxRegions,
+                             Connection connection = Connection::sides);
 
 // The result of an operation on the regions of a layer.
 struct CleanedValues {

@@ -249,6 +249,48 @@ def test_each_piece_becomes_a_record(server):
     assert value_at(server, "losses", 75, 30) == report["keys"][1]
 
 
+def test_cracks_become_records_with_length_and_width_in_reading_order(server):
+    lines = (
+        "(y between 79.8 and 80.2 and x between 20 and 80) or "
+        "(x between 69.7 and 70.3 and y between 10 and 50) or "
+        "(x between 19.9 and 20.1 and y between 10 and 40) or "
+        "(y between 24.9 and 25.1 and x between 20 and 35)"
+    )
+    body = {"name": "Cracks", "expression": lines, "resolution": 2048, "type": "u8"}
+    server.ok("POST", M + "/layers", body)
+    columns = [
+        {"name": name, "kind": "numeric"} for name in ("Number", "Length", "Width", "Greatest")
+    ]
+    body = {"name": "Found", "kind": "database", "type": "u8", "resolution": 2048}
+    server.ok("POST", M + "/layers", {**body, "columns": columns})
+    path = M + "/layers/cracks/piece-records"
+    body = {
+        "into": "found",
+        "as_lines": True,
+        "number_column": "number",
+        "length_column": "length",
+        "width_column": "width",
+        "greatest_width_column": "greatest",
+    }
+    assert run(server, path, {**body, "apply": False})["regions"] == 3
+    report = run(server, path, body)
+    assert report["applied"] and len(report["keys"]) == 3, report
+    # the second one has a branch
+    for key, number, length, width in zip(
+        report["keys"], (1, 2, 3), (60, 45, 40), (0.4, 0.2, 0.6)
+    ):
+        values = server.get(f"/tables/found/records/{key}").json()["values"]
+        assert values["number"] == number, values
+        assert abs(values["length"] / length - 1) < 0.05, values
+        assert abs(values["width"] / width - 1) < 0.1, values
+        assert abs(values["greatest"] - width) < 0.16, values
+    assert value_at(server, "found", 70, 30) == report["keys"][2]
+    refused = server.post(path, {**body, "as_lines": False})
+    assert refused.status == 422 and refused.json()["field"] == "length_column", refused
+    refused = server.post(path, {**body, "width_column": "none"})
+    assert refused.status == 422 and refused.json()["field"] == "width_column", refused
+
+
 def test_if_a_record_cannot_be_written_nothing_is_painted(server):
     path = DAMAGE + "/piece-records"
     job = server.wait_for_job(server.ok("POST", path, {"into": "strict"}).json()["id"])

@@ -2220,12 +2220,20 @@ export interface PieceRecords {
   of?: number;
   /** Smaller pieces get no record. Default: 0. */
   min_area_cm2?: number;
-  /** Slug of a column for the number of the piece, from 1. The largest piece is 1. */
+  /** Slug of a column for the number of the piece, from 1. The largest piece is 1. With `as_lines`, the numbers are in reading order. */
   number_column?: string;
   /** Slug of a column for the area in cm². */
   area_column?: string;
   /** Slug of a column for the perimeter in mm. */
   perimeter_column?: string;
+  /** Measures the pieces as lines, such as cracks. Texels that touch only at corners are then one piece. The numbers are in reading order: in ten rows from top to bottom of the front view, and from left to right in each row. Default: false. */
+  as_lines?: boolean;
+  /** With `as_lines`: slug of a column for the length in mm of the center line with its branches, up to the ends of the piece. */
+  length_column?: string;
+  /** With `as_lines`: slug of a column for the mean width in mm, which is the area divided by the length. */
+  width_column?: string;
+  /** With `as_lines`: slug of a column for the width in mm of the widest place. */
+  greatest_width_column?: string;
   /** false: only count the pieces. Default: true. */
   apply?: boolean;
 }

@@ -668,6 +668,12 @@ export const laterTexts = {
     number_column: "Spalte für die Nummer",
     area_column: "Spalte für die Fläche in cm²",
     perimeter_column: "Spalte für den Umfang in mm",
+    as_lines: "Als Linien messen, etwa Risse",
+    as_lines_hint:
+      "Länge und Breite folgen der Mittellinie. Die Nummern laufen von oben nach unten und von links nach rechts.",
+    length_column: "Spalte für die Länge in mm",
+    width_column: "Spalte für die mittlere Breite in mm",
+    greatest_width_column: "Spalte für die größte Breite in mm",
     no_column: "Keine",
     pieces: (n) => count(n, "Teilstück", "Teilstücke"),
     make_records: "Datensätze anlegen",

@@ -660,6 +660,12 @@ export const laterTexts = {
     number_column: "Column for the number",
     area_column: "Column for the area in cm²",
     perimeter_column: "Column for the perimeter in mm",
+    as_lines: "Measure as lines, such as cracks",
+    as_lines_hint:
+      "Length and width follow the center line. The numbers run from top to bottom and from left to right.",
+    length_column: "Column for the length in mm",
+    width_column: "Column for the mean width in mm",
+    greatest_width_column: "Column for the greatest width in mm",
     no_column: "None",
     pieces: (n: number) => count(n, "piece", "pieces"),
     make_records: "Make records",

@@ -662,6 +662,12 @@ export const laterTexts = {
     number_column: "Columna para el número",
     area_column: "Columna para el área en cm²",
     perimeter_column: "Columna para el perímetro en mm",
+    as_lines: "Medir como líneas, por ejemplo grietas",
+    as_lines_hint:
+      "La longitud y el ancho siguen la línea central. Los números van de arriba abajo y de izquierda a derecha.",
+    length_column: "Columna para la longitud en mm",
+    width_column: "Columna para el ancho medio en mm",
+    greatest_width_column: "Columna para el ancho máximo en mm",
     no_column: "Ninguna",
     pieces: (n) => count(n, "fragmento", "fragmentos"),
     make_records: "Crear registros",

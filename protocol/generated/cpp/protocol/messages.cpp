@@ -2985,6 +2985,10 @@ void read(const nlohmann::json& json, PieceRecords& value) {
   read_optional_member(json, "number_column", value.number_column);
   read_optional_member(json, "area_column", value.area_column);
   read_optional_member(json, "perimeter_column", value.perimeter_column);
+  read_optional_member(json, "as_lines", value.as_lines);
+  read_optional_member(json, "length_column", value.length_column);
+  read_optional_member(json, "width_column", value.width_column);
+  read_optional_member(json, "greatest_width_column", value.greatest_width_column);
   read_optional_member(json, "apply", value.apply);
 }
 
@@ -2996,6 +3000,10 @@ nlohmann::json to_json(const PieceRecords& value) {
   write_optional_member(json, "number_column", value.number_column);
   write_optional_member(json, "area_column", value.area_column);
   write_optional_member(json, "perimeter_column", value.perimeter_column);
+  write_member(json, "as_lines", value.as_lines);
+  write_optional_member(json, "length_column", value.length_column);
+  write_optional_member(json, "width_column", value.width_column);
+  write_optional_member(json, "greatest_width_column", value.greatest_width_column);
   write_member(json, "apply", value.apply);
   return json;
 }

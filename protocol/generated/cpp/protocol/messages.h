@@ -2225,10 +2225,23 @@ struct PieceRecords {
   LayerRef into;
   std::optional<double> of;  // The value of the pieces. Default: all values.
   double min_area_cm2 = 0;  // Smaller pieces get no record.
-  // Slug of a column for the number of the piece, from 1. The largest piece is 1.
+  // Slug of a column for the number of the piece, from 1. The largest piece is 1. With `as_lines`,
+  // the numbers are in reading order.
   std::optional<std::string> number_column;
   std::optional<std::string> area_column;  // Slug of a column for the area in cm².
   std::optional<std::string> perimeter_column;  // Slug of a column for the perimeter in mm.
+  // Measures the pieces as lines, such as cracks. Texels that touch only at corners are then one
+  // piece. The numbers are in reading order: in ten rows from top to bottom of the front view, and
+  // from left to right in each row.
+  bool as_lines = false;
+  // With `as_lines`: slug of a column for the length in mm of the center line with its branches, up
+  // to the ends of the piece.
+  std::optional<std::string> length_column;
+  // With `as_lines`: slug of a column for the mean width in mm, which is the area divided by the
+  // length.
+  std::optional<std::string> width_column;
+  // With `as_lines`: slug of a column for the width in mm of the widest place.
+  std::optional<std::string> greatest_width_column;
   bool apply = true;  // false: only count the pieces.
   bool operator==(const PieceRecords&) const = default;
 };

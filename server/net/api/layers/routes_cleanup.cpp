@@ -141,9 +141,22 @@ Result<app::PieceRecords> pieces_of(const RouteContext& context, const room::Roo
     return fail(ErrorCode::invalid, "No table",
                 into.name + " is not a layer of records. Choose a layer of records.", "into");
   if (body.apply) STRATA_TRY(room::check_not_locked(into, role));
+  const struct {
+    const char* name;
+    const std::optional<std::string>& column;
+  } of_lines[] = {{"length_column", body.length_column},
+                  {"width_column", body.width_column},
+                  {"greatest_width_column", body.greatest_width_column}};
+  for (const auto& [member, column] : of_lines)
+    if (column && !body.as_lines)
+      return fail(ErrorCode::invalid, "Member without effect",
+                  "`" + std::string(member) +
+                      "` has no effect without `as_lines`. Remove it, or set `as_lines`.",
+                  member);
   app::PieceRecords pieces;
   pieces.into = into.id;
   pieces.min_area_m2 = body.min_area_cm2 / 1e4;
+  pieces.as_lines = body.as_lines;
   if (body.of) {
     const auto bits = STRATA_TRY(bits_of(layer, *body.of, "of"));
     pieces.of_bits = bits;
@@ -159,6 +172,9 @@ Result<app::PieceRecords> pieces_of(const RouteContext& context, const room::Roo
   STRATA_TRY(find(body.number_column, "number_column", pieces.number));
   STRATA_TRY(find(body.area_column, "area_column", pieces.area_cm2));
   STRATA_TRY(find(body.perimeter_column, "perimeter_column", pieces.perimeter_mm));
+  STRATA_TRY(find(body.length_column, "length_column", pieces.length_mm));
+  STRATA_TRY(find(body.width_column, "width_column", pieces.width_mm));
+  STRATA_TRY(find(body.greatest_width_column, "greatest_width_column", pieces.greatest_width_mm));
   return pieces;
 }
 

@@ -81,6 +81,20 @@ export interface PiecesInput {
   number: string;
   area: string;
   perimeter: string;
+  /** Measures the pieces as lines. Only then do the next columns count. */
+  asLines: boolean;
+  length: string;
+  width: string;
+  greatestWidth: string;
+}
+
+function linesOf({ length, width, greatestWidth }: PiecesInput): Partial<PieceRecords> {
+  return {
+    as_lines: true,
+    ...(length ? { length_column: length } : {}),
+    ...(width ? { width_column: width } : {}),
+    ...(greatestWidth ? { greatest_width_column: greatestWidth } : {}),
+  };
 }
 
 export function piecesOf(input: PiecesInput, apply: boolean): PieceRecords | Refusal {
@@ -96,6 +110,7 @@ export function piecesOf(input: PiecesInput, apply: boolean): PieceRecords | Ref
     ...(input.number ? { number_column: input.number } : {}),
     ...(input.area ? { area_column: input.area } : {}),
     ...(input.perimeter ? { perimeter_column: input.perimeter } : {}),
+    ...(input.asLines ? linesOf(input) : {}),
     apply,
   };
 }

@@ -1,7 +1,7 @@
 // <strata-pieces-dialog>: creates a record for each connected piece of a class. It is next to the
 // 3D view. A preview counts the pieces.
 
-import { html, LitElement, type TemplateResult } from "lit";
+import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import type { PieceRecords } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
@@ -38,6 +38,10 @@ export class StrataPiecesDialog extends LitElement {
     number: "",
     area: "",
     perimeter: "",
+    asLines: false,
+    length: "",
+    width: "",
+    greatestWidth: "",
   };
   @state() private _into: number | null = null;
   private readonly _work = new RegionJob(this);
@@ -90,11 +94,23 @@ export class StrataPiecesDialog extends LitElement {
       </label>
       ${this.column("number", words.number_column, target)}
       ${this.column("area", words.area_column, target)}
-      ${this.column("perimeter", words.perimeter_column, target)}`;
+      ${this.column("perimeter", words.perimeter_column, target)}
+      <label class="check">
+        <input type="checkbox" name="as_lines" .checked=${this._input.asLines} @change=${(event: Event) => this.change({ asLines: (event.target as HTMLInputElement).checked })} />
+        ${words.as_lines}
+      </label>
+      <p class="hint">${words.as_lines_hint}</p>
+      ${this._input.asLines ? this.lineColumns(target) : nothing}`;
+  }
+
+  private lineColumns(target: Layer): TemplateResult {
+    return html`${this.column("length", words.length_column, target)}
+    ${this.column("width", words.width_column, target)}
+    ${this.column("greatestWidth", words.greatest_width_column, target)}`;
   }
 
   private column(
-    member: "number" | "area" | "perimeter",
+    member: "number" | "area" | "perimeter" | "length" | "width" | "greatestWidth",
     label: string,
     target: Layer,
   ): TemplateResult {
@@ -114,7 +130,14 @@ export class StrataPiecesDialog extends LitElement {
 
   private choose(into: number): void {
     this._into = into;
-    this.change({ number: "", area: "", perimeter: "" });
+    this.change({
+      number: "",
+      area: "",
+      perimeter: "",
+      length: "",
+      width: "",
+      greatestWidth: "",
+    });
   }
 
   private change(part: Partial<PiecesInput>): void {

@@ -99,7 +99,18 @@ describe("the request for a clean-up", () => {
 });
 
 describe("the request for records of pieces", () => {
-  const pieces = { into: 5, of: "", minArea: "", number: "", area: "", perimeter: "" };
+  const pieces = {
+    into: 5,
+    of: "",
+    minArea: "",
+    number: "",
+    area: "",
+    perimeter: "",
+    asLines: false,
+    length: "",
+    width: "",
+    greatestWidth: "",
+  };
   it("leaves out what is empty", () => {
     expect(piecesOf(pieces, false)).toEqual({ into: 5, apply: false });
     expect(piecesOf({ ...pieces, of: "0", minArea: "0.5", number: "no", area: "a" }, true)).toEqual(
@@ -113,6 +124,22 @@ describe("the request for records of pieces", () => {
       },
     );
     expect(piecesOf({ ...pieces, minArea: "-1" }, true)).toMatchObject({ field: "min_area_cm2" });
+  });
+  it("measures lines only if they are chosen", () => {
+    const columns = { ...pieces, length: "l", greatestWidth: "g" };
+    expect(piecesOf(columns, true)).toEqual({ into: 5, apply: true });
+    expect(piecesOf({ ...columns, asLines: true }, true)).toEqual({
+      into: 5,
+      as_lines: true,
+      length_column: "l",
+      greatest_width_column: "g",
+      apply: true,
+    });
+    expect(piecesOf({ ...pieces, asLines: true }, false)).toEqual({
+      into: 5,
+      as_lines: true,
+      apply: false,
+    });
   });
   it("goes to another layer of records with the same resolution", () => {
     const layer = (id: number, resolution: number, table?: number) =>
