@@ -458,7 +458,7 @@ class Parser {
     if (is("within")) return within();
     if (is("hysteresis")) return hysteresis();
     for (const NamedSurfaceFunction& each : kSurfaceFunctions)
-      if (is(each.name)) return surface_function(each.op, each.limit);
+      if (is(each.name)) return surface_function(each);
     for (const Operator& each : operators()) {
       if (!is(each.name)) continue;
       switch (each.form) {
@@ -555,7 +555,7 @@ class Parser {
 
   Expression within() {
     const auto at = token_.at;
-    return make(Op::known, at, surface_function(Op::distance, NamedSurfaceFunction::Limit::needed));
+    return make(Op::known, at, surface_function({Op::distance, "within"}));
   }
 
   Expression hysteresis() {
@@ -600,7 +600,8 @@ class Parser {
         position(token_.at, at_), mistake::kComputedLayersOnly);
   }
 
-  Expression surface_function(Op op, NamedSurfaceFunction::Limit needs) {
+  Expression surface_function(const NamedSurfaceFunction& named) {
+    const Op op = named.op;
     const auto at = token_.at;
     const auto name_end = at_;
     if (names_ == Names::columns) return refuse_surface();
@@ -612,9 +613,10 @@ class Parser {
         op == Op::distance ? source(std::move(part), part_at) : numeric(std::move(part), part_at);
     Expression function = make(op, at, std::move(part));
     function.number = std::numeric_limits<double>::infinity();
-    if (needs == NamedSurfaceFunction::Limit::needed && !is(","))
-      refuse(op == Op::watershed ? "Expected ',' and a height" : "Expected ',' and a distance");
-    if (needs != NamedSurfaceFunction::Limit::none && take(",")) function.number = limit();
+    using Limit = NamedSurfaceFunction::Limit;
+    if (named.limit == Limit::needed && !is(","))
+      refuse("Expected ',' and a " + std::string(named.limit_name));
+    if (named.limit != Limit::none && take(",")) function.number = limit(named);
     expect(")");
     function.position = position(at, name_end);
     return function;
@@ -629,14 +631,14 @@ class Parser {
     return condition(std::move(expression), at);
   }
 
-  double limit() {
+  double limit(const NamedSurfaceFunction& named) {
     if (token_.kind != Token::Kind::number) {
-      refuse("Write the distance or height as a number, such as 20");
+      refuse("Write the " + std::string(named.limit_name) + " as a number, such as 20");
       return 0;
     }
     const double number = token_.number;
     advance();
-    refuse_unit("model");
+    refuse_unit(std::string(named.limit_unit));
     return number;
   }
 

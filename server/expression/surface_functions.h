@@ -18,7 +18,9 @@ constexpr std::size_t kMaxSurfaceFunctions = 8;  // in one formula
 struct NamedSurfaceFunction {
   Expression::Op op;
   std::string_view name;
-  enum class Limit { none, optional, needed } limit = Limit::needed;  // the second argument
+  // The second argument: whether it exists, its name, and whose unit it has.
+  enum class Limit { none, optional, needed } limit = Limit::needed;
+  std::string_view limit_name = "distance", limit_unit = "model";
 };
 inline constexpr std::array kSurfaceFunctions{
     NamedSurfaceFunction{Expression::Op::distance, "distance",
@@ -29,9 +31,12 @@ inline constexpr std::array kSurfaceFunctions{
     NamedSurfaceFunction{Expression::Op::focal_max, "focal_max"},
     NamedSurfaceFunction{Expression::Op::focal_variety, "focal_variety"},
     NamedSurfaceFunction{Expression::Op::hot_spot, "hot_spot"},
-    NamedSurfaceFunction{Expression::Op::valley, "valley"},
-    NamedSurfaceFunction{Expression::Op::ridge, "ridge"},
-    NamedSurfaceFunction{Expression::Op::watershed, "watershed"},
+    NamedSurfaceFunction{Expression::Op::valley, "valley", NamedSurfaceFunction::Limit::needed,
+                         "width"},
+    NamedSurfaceFunction{Expression::Op::ridge, "ridge", NamedSurfaceFunction::Limit::needed,
+                         "width"},
+    NamedSurfaceFunction{Expression::Op::watershed, "watershed",
+                         NamedSurfaceFunction::Limit::needed, "height", "layer"},
     NamedSurfaceFunction{Expression::Op::run_off, "run_off", NamedSurfaceFunction::Limit::none},
     NamedSurfaceFunction{Expression::Op::interpolated, "interpolated"},
     NamedSurfaceFunction{Expression::Op::interpolation_error, "interpolation_error"}};

@@ -29,9 +29,14 @@ namespace strata::app {
 namespace {
 
 // Bytes per texel of the map while one function is computed, and of the values of each function.
-constexpr std::uint64_t kWorkBytesPerTexel = 36, kValueBytesPerTexel = 5;
+constexpr std::uint64_t kWorkBytesPerTexel = 48, kValueBytesPerTexel = 5;
 // The triangles across seams, for the texels within two steps of a link.
 constexpr std::uint64_t kSeamBytesPerTexel = 2048;
+
+// The part of a job in which a function is computed.
+struct Stage {
+  double from, to;
+};
 
 // Computes functions of one formula.
 class SurfaceFunctionValues {
@@ -50,8 +55,9 @@ class SurfaceFunctionValues {
 
   // Reads `views`, and returns the values as one more.
   Result<query::LayerView> compute(const query::SurfaceFormula::Function& requested,
-                                   const std::vector<query::LayerView>& views,
-                                   Progress& progress) const {
+                                   const std::vector<query::LayerView>& views, Progress& progress,
+                                   Stage stage) const {
+    progress.begin_stage(stage.from, stage.to);
     const Expression& argument = requested.function.parts.front();
     const auto bound = STRATA_TRY(room::bind_for_layer(argument, views, services_.store,
                                                        author_.role, layer_.visibility, kField));
@@ -61,9 +67,9 @@ class SurfaceFunctionValues {
     result.layer.type =
         requested.function.op == Op::nearest ? type_of(argument, views) : ValueType::f32;
     auto values =
-        STRATA_TRY(argument.is_condition()
-                       ? distances(bound, requested.function, progress)
-                       : of_numbers(bound, requested.function, type_of(argument, views), progress));
+        STRATA_TRY(argument.is_condition() ? distances(bound, requested.function, progress)
+                                           : of_numbers(bound, requested.function,
+                                                        type_of(argument, views), progress, stage));
     auto content =
         STRATA_TRY(query::make_patch({}, result.layer.type, *map_, std::move(values), progress));
     for (auto& [address, tile] : content.tiles)
@@ -85,7 +91,7 @@ class SurfaceFunctionValues {
 
   Result<query::SurfaceValues> of_numbers(const room::BoundForLayer& number,
                                           const Expression& function, ValueType type,
-                                          Progress& progress) const {
+                                          Progress& progress, Stage stage) const {
     const int threads = mesh::background_threads();
     const auto tiles = STRATA_TRY(query::compute_tiles(number.expression, number.layers, *map_,
                                                        frame_, type, kField, threads));
@@ -99,7 +105,7 @@ class SurfaceFunctionValues {
     if (function.op == Op::watershed)
       return query::watershed_values(values, type, function.number, *map_, *graph_, kField,
                                      progress);
-    if (function.op == Op::run_off) return run_off(values, type, progress);
+    if (function.op == Op::run_off) return run_off(values, type, progress, stage);
     if (function.op == Op::valley || function.op == Op::ridge)
       return query::line_depth_values(
           function.op == Op::valley ? query::Line::valley : query::Line::ridge, values, type,
@@ -113,9 +119,12 @@ class SurfaceFunctionValues {
 
   // In litres per metre of width, from the rain in l/m².
   Result<query::SurfaceValues> run_off(const query::SurfaceValues& rain, ValueType type,
-                                       Progress& progress) const {
+                                       Progress& progress, Stage stage) const {
+    const double drips_found = (2 * stage.from + stage.to) / 3;
+    progress.begin_stage(stage.from, drips_found);
     const auto drips = STRATA_TRY(
         query::dripping_texels(geometry_, *map_, up_, progress, mesh::background_threads()));
+    progress.begin_stage(drips_found, stage.to);
     auto water =
         STRATA_TRY(query::run_off(rain, type, up_, drips, *map_, *graph_, progress)).passing;
     for (std::uint32_t& bits : water.bits)
@@ -200,9 +209,9 @@ Result<void> compute_surface_functions(const Services& services, room::Room& roo
   std::vector<query::LayerView> views = STRATA_TRY(views_read_by(room, formula));
   views.insert(views.end(), shapes.begin(), shapes.end());
   for (const auto& function : formula.functions) {
-    progress.begin_stage(double(first) / double(steps), double(first + 1) / double(steps));
+    const Stage stage{double(first) / double(steps), double(first + 1) / double(steps)};
     ++first;
-    auto computed = STRATA_TRY(values.compute(function, views, progress));
+    auto computed = STRATA_TRY(values.compute(function, views, progress, stage));
     if (progress.cancelled()) return cancelled_problem();
     views.push_back(computed);
     shapes.push_back(std::move(computed));

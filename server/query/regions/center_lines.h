@@ -31,8 +31,8 @@ struct LineMeasures {
 // Peucker, 1973) with a tolerance of 1.5 texels, or of an eighth of the width if that is more, so
 // the steps of the texels add nothing. A round piece has its diameter as its length.
 //
-// The error of the length of lines much longer than wide is mostly less than 3 %. At each sharp
-// corner, the line is shorter by up to a third of its width. The greatest width is exact to about a
+// The error of the length of lines much longer than wide is at most about 5 %. At each sharp
+// corner, the line is shorter by up to 0.4 of its width. The greatest width is exact to about a
 // texel, or two texels near seams. At junctions, it is the width of the junction.
 //
 // The time is proportional to the texels of the pieces. Needs about 24 bytes of memory per texel of

@@ -42,8 +42,16 @@ class Water {
   // outlets on. Returns false when cancelled.
   bool fill_hollows(Progress& progress) {
     order_.reserve(map_.surface_texels);
+    if (progress.cancelled()) return false;
     for_each_texel([&](std::uint32_t texel) {
-      if (leaves_at(texel)) open(texel, kNoNeighbour, height(texel));
+      if (!leaves_at(texel)) return;
+      // No water reaches the middle of a ceiling, so its texels need no place in the heap.
+      if (is_within_drips(texel)) {
+        level_[texel] = height(texel);
+        order_.push_back(texel);
+      } else {
+        open(texel, kNoNeighbour, height(texel));
+      }
     });
     if (!flood(progress)) return false;
     // Pieces without an outlet.
@@ -57,6 +65,7 @@ class Water {
       open(texel, kNoNeighbour, lowest);
       if (!flood(progress)) return false;
     }
+    heap_ = {};  // frees its memory
     return true;
   }
 
@@ -108,6 +117,12 @@ class Water {
   bool drips_at(std::uint32_t texel) const { return (drips_[texel / 64] >> texel % 64 & 1u) != 0; }
   bool leaves_at(std::uint32_t texel) const {
     return drips_at(texel) || (graph_.at_open_edge[texel / 64] >> texel % 64 & 1u) != 0;
+  }
+  bool is_within_drips(std::uint32_t texel) const {
+    bool within = drips_at(texel);
+    mesh::for_each_neighbour(map_, graph_, texel,
+                             [&](std::uint32_t other) { within &= drips_at(other); });
+    return within;
   }
   double rain_on(std::uint32_t texel, const SurfaceValues& rain, ValueType type) const {
     const TexelValue value = rain.of(texel);
@@ -236,7 +251,6 @@ Result<std::vector<std::uint64_t>> dripping_texels(
 Result<RunOff> run_off(const SurfaceValues& rain, ValueType type, glm::dvec3 up,
                        std::span<const std::uint64_t> drips, const mesh::SurfaceMap& map,
                        const mesh::TexelGraph& graph, Progress& progress) {
-  progress.report(0, kRunning);
   Water water(map, graph, up, drips);
   if (!water.fill_hollows(progress)) return cancelled_problem();
   return water.run(rain, type, progress);

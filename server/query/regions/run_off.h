@@ -53,7 +53,7 @@ Result<std::vector<std::uint64_t>> dripping_texels(
 // square root of the length of its way, in texels. Water at an open edge flows along the edge while
 // a neighbor is lower.
 //
-// Needs about 28 bytes of memory per texel of the map. Fails when cancelled.
+// Needs about 32 bytes of memory per texel of the map. Fails when cancelled.
 Result<RunOff> run_off(const SurfaceValues& rain, ValueType type, glm::dvec3 up,
                        std::span<const std::uint64_t> drips, const mesh::SurfaceMap& map,
                        const mesh::TexelGraph& graph, Progress& progress);

@@ -58,6 +58,15 @@ void TexelBalls::forget() {
 
 void TexelBalls::fill(std::uint32_t start) {
   if (blocks_.size() > max_blocks_ / 2) forget();
+  const bool keeps_blocks = !blocks_.empty();
+  fill_once(start);
+  if (blocks_.size() < max_blocks_ || !keeps_blocks) return;
+  // The blocks of other balls have left too little room for this one.
+  forget();
+  fill_once(start);
+}
+
+void TexelBalls::fill_once(std::uint32_t start) {
   ++ball_;
   texels_ = 0;
   touched_.clear();

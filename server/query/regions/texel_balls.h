@@ -24,7 +24,8 @@ struct BlockTexels {
 // neighboring texels are fastest. Use each object on one thread.
 class TexelBalls {
  public:
-  // `radius` is in model units. A ball ends after about `max_texels` texels. An object needs up to
+  // `radius` is in model units. A ball ends after about `max_texels` texels, and in atlases of
+  // tiny charts after 256 + max_texels / 16 blocks. An object needs up to
   // 80 bytes of memory for each of them, and 300 KiB.
   TexelBalls(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, double radius,
              std::size_t max_texels);
@@ -57,6 +58,7 @@ class TexelBalls {
   };
 
   void fill(std::uint32_t start);
+  void fill_once(std::uint32_t start);
   void spread(std::uint32_t index);
   void reach(std::uint32_t index, std::uint64_t bits);
   void walk(std::uint32_t start);

@@ -31,9 +31,10 @@ inline constexpr std::size_t kMaxBasins = 1'000'000;
 // (Grimaud 1992). Places where the values are not finite numbers are in no basin.
 //
 // Needs about 20 bytes of memory per texel of the map. Fails when cancelled, and with an `invalid`
-// error at `field` for more than kMaxBasins basins. `height` must not be negative.
+// error at `field` for more than `max_basins` basins. `height` must not be negative.
 Result<SurfaceValues> watershed_values(const SurfaceValues& values, ValueType type, double height,
                                        const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                                       const std::string& field, Progress& progress);
+                                       const std::string& field, Progress& progress,
+                                       std::size_t max_basins = kMaxBasins);
 
 }  // namespace strata::query

@@ -276,9 +276,7 @@ def test_cracks_become_records_with_length_and_width_in_reading_order(server):
     report = run(server, path, body)
     assert report["applied"] and len(report["keys"]) == 3, report
     # the second one has a branch
-    for key, number, length, width in zip(
-        report["keys"], (1, 2, 3), (60, 45, 40), (0.4, 0.2, 0.6)
-    ):
+    for key, number, length, width in zip(report["keys"], (1, 2, 3), (60, 45, 40), (0.4, 0.2, 0.6)):
         values = server.get(f"/tables/found/records/{key}").json()["values"]
         assert values["number"] == number, values
         assert abs(values["length"] / length - 1) < 0.05, values

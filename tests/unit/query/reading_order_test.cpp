@@ -12,7 +12,7 @@ using Order = std::vector<std::uint32_t>;
 
 TEST(ReadingOrder, is_from_top_to_bottom_and_from_left_to_right) {
   // On a wall, up to a tenth of its height apart in each row.
-  const std::vector<glm::dvec3> wall{{50, 3, 10}, {10, 0, 96}, {90, 2, 100}, {40, 1, 98},
+  const std::vector<glm::dvec3> wall{{50, 3, 11}, {10, 0, 96}, {90, 2, 100}, {40, 1, 98},
                                      {20, 0, 12}, {5, 1, 50},  {7, 0, 0}};
   EXPECT_EQ(reading_order(wall, up_frame("z")), (Order{1, 3, 2, 5, 4, 0, 6}));
 }

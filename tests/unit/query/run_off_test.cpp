@@ -4,12 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -171,6 +173,39 @@ TEST(RunOff, drips_where_the_surface_faces_down) {
     test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
       const bool is_below = world(surface, texel).z < -7;
       EXPECT_TRUE(!is_below || std::bit_cast<float>(water.passing.bits[texel]) == 0);
+    });
+  }
+}
+
+// Half a cylinder along y, above and below.
+TEST(RunOff, drips_where_the_surface_faces_down_by_more_than_30_degrees) {
+  const test::Shape tube{
+      180, 8,
+      [](double s, double t) {
+        const double turn = 2 * std::numbers::pi * s;
+        return glm::dvec3(20 * std::cos(turn), 30 * t, 20 * std::sin(turn));
+      },
+      [](double s, double t) { return glm::dvec2(2 * std::numbers::pi * 20 * s, 30 * t); }};
+  const Surface surface = test::cut_surface(tube, {1, 1, 0, 1}, kResolution);
+  const auto geometry = std::make_shared<const mesh::Geometry>(surface.geometry);
+  for (const glm::dvec3 up : {glm::dvec3(0, 0, 1), glm::dvec3(-1, 0, 0)}) {
+    Progress progress;
+    const auto drips = dripping_texels(geometry, surface.map, up, progress);
+    ASSERT_TRUE(drips);
+    // The normals of this tube may face in or out.
+    double facing = 0;
+    test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+      if (((*drips)[texel / 64] >> texel % 64 & 1u) != 0)
+        facing += glm::dot(world(surface, texel), up);
+    });
+    ASSERT_NE(facing, 0);
+    const double out = facing < 0 ? 1 : -1;
+    test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+      const glm::dvec3 at = world(surface, texel);
+      const double angle =
+          std::asin(std::clamp(out * glm::dot(at, up) / 20, -1.0, 1.0)) * 180 / std::numbers::pi;
+      if (std::abs(angle + kDripAngle) < 3) return;  // the facets of the tube
+      EXPECT_EQ(((*drips)[texel / 64] >> texel % 64 & 1u) != 0, angle < -kDripAngle) << angle;
     });
   }
 }

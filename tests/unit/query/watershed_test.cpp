@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -117,6 +118,44 @@ TEST(Watershed, has_a_basin_for_each_minimum_that_is_deep_enough) {
       EXPECT_EQ(*found.rbegin(), expected);
     }
   }
+}
+
+// On plateaus, a depth can be exactly the height.
+TEST(Watershed, joins_basins_that_are_less_deep_than_the_height) {
+  const Surface sheet = test::cut_sheet(kSeams);
+  // Three valleys with the floors 0, 2 and 3, and passes of 5 and 4 between them.
+  const SurfaceValues steps = numbers_on(sheet, [](glm::ivec2 at) {
+    const int column = at.x / 40;
+    constexpr float kLevels[] = {0, 5, 2, 4, 3};
+    return kLevels[column];
+  });
+  const auto basins_at = [&](double height) {
+    const SurfaceValues basins = basins_of(sheet, steps, height);
+    std::map<int, int> of_column;
+    test::for_each_surface_texel(sheet.map, [&](std::uint32_t texel) {
+      of_column[test::sheet_place(sheet, texel).x / 40] = basin_at(basins, texel);
+    });
+    return std::array{of_column[0], of_column[2], of_column[4]};
+  };
+  const auto all = basins_at(1);  // the third valley is exactly 1 deep
+  EXPECT_EQ((std::set<int>{all[0], all[1], all[2]}), (std::set<int>{1, 2, 3}));
+  const auto joined = basins_at(1.01);
+  EXPECT_EQ(joined[1], joined[2]);
+  EXPECT_NE(joined[0], joined[1]);
+  EXPECT_NE(basins_at(3)[0], basins_at(3)[1]);
+  const auto one = basins_at(3.01);
+  EXPECT_EQ(one, (std::array{1, 1, 1}));
+}
+
+TEST(Watershed, refuses_too_many_basins) {
+  const Surface sheet = test::cut_sheet(kUncut);
+  const SurfaceValues values = numbers_on(sheet, hills(3));
+  Progress progress;
+  const auto refused = watershed_values(values, ValueType::f32, 0, sheet.map, sheet.graph,
+                                        "expression", progress, 3);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().field, "expression");
+  EXPECT_NE(refused.error().detail.find("more than 3 basins"), std::string::npos);
 }
 
 TEST(Watershed, has_connected_basins_in_the_order_of_their_areas) {
@@ -238,13 +277,27 @@ TEST(Watershed, finds_the_stones_of_a_wall) {
   }
 }
 
-TEST(Watershed, can_be_cancelled) {
+// Cancels at a chosen check.
+class CancelledAt : public Progress {
+ public:
+  explicit CancelledAt(int check) : left_(check) {}
+  bool cancelled() const override { return left_-- <= 0; }
+
+ private:
+  mutable int left_;
+};
+
+TEST(Watershed, can_be_cancelled_at_each_step) {
   const Surface sheet = test::cut_sheet(kUncut);
   const SurfaceValues values = numbers_on(sheet, hills(1));
-  Progress progress;
-  progress.cancel();
-  EXPECT_FALSE(
-      watershed_values(values, ValueType::f32, 0, sheet.map, sheet.graph, "expression", progress));
+  int checks = 0;
+  for (bool ended = false; !ended; ++checks) {
+    CancelledAt progress(checks);
+    ended =
+        watershed_values(values, ValueType::f32, 0, sheet.map, sheet.graph, "expression", progress)
+            .has_value();
+  }
+  EXPECT_GT(checks, 6);
 }
 
 }  // namespace
