@@ -125,7 +125,7 @@ Subject make_subject(const mesh::Geometry& geometry, int resolution) {
 struct Operator {
   const char* name;
   bool of_classes;  // whether the result has classes, or numbers (f32)
-  std::function<SurfaceValues(const Subject&, Progress&)> work;
+  std::function<Result<SurfaceValues>(const Subject&, Progress&)> work;
 };
 
 SurfaceValues as_values(const std::vector<std::uint64_t>& selection) {
@@ -138,33 +138,35 @@ SurfaceValues as_values(const std::vector<std::uint64_t>& selection) {
 std::vector<Operator> operators() {
   const int threads = mesh::background_threads();
   const auto focal = [=](query::Focal statistic, bool of_classes, double share) {
-    return [=](const Subject& on, Progress& progress) {
-      return must(query::focal_values(statistic, of_classes ? on.classes : on.numbers,
-                                      of_classes ? ValueType::u32 : ValueType::f32, share * on.side,
-                                      on.map, on.graph, "radius", progress, threads));
+    return [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+      return query::focal_values(statistic, of_classes ? on.classes : on.numbers,
+                                 of_classes ? ValueType::u32 : ValueType::f32, share * on.side,
+                                 on.map, on.graph, "radius", progress, threads);
     };
   };
   const auto distance = [=](double share) {
-    return [=](const Subject& on, Progress& progress) {
-      return must(query::distance_values(on.readings.valid, share * on.side, on.map, on.graph,
-                                         progress, threads));
+    return [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+      return query::distance_values(on.readings.valid, share * on.side, on.map, on.graph, progress,
+                                    threads);
     };
   };
   const auto interpolated = [=](query::Interpolated what) {
-    return [=](const Subject& on, Progress& progress) {
-      return must(query::interpolated_values(what, on.readings, ValueType::f32, 0.3 * on.side,
-                                             on.map, on.graph, "range", progress, threads));
+    return [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+      return query::interpolated_values(what, on.readings, ValueType::f32, 0.3 * on.side, on.map,
+                                        on.graph, "range", progress, threads);
     };
   };
   const auto sieved = [](auto clean) {
-    return [=](const Subject& on, Progress& progress) {
-      const auto regions = must(query::find_regions(on.classes, on.map, on.graph, progress));
-      return must(clean(on, regions, 1e-4 * on.map.area_total, progress)).values;
+    return [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+      const auto regions = STRATA_TRY(query::find_regions(on.classes, on.map, on.graph, progress));
+      return STRATA_TRY(clean(on, regions, 1e-4 * on.map.area_total, progress)).values;
     };
   };
   return {
-      {"numbers, unchanged", false, [](const Subject& on, Progress&) { return on.numbers; }},
-      {"classes, unchanged", true, [](const Subject& on, Progress&) { return on.classes; }},
+      {"numbers, unchanged", false,
+       [](const Subject& on, Progress&) -> Result<SurfaceValues> { return on.numbers; }},
+      {"classes, unchanged", true,
+       [](const Subject& on, Progress&) -> Result<SurfaceValues> { return on.classes; }},
       {"distance to areas, everywhere", false, distance(std::numeric_limits<double>::infinity())},
       {"buffer of 1 %", false, distance(0.01)},
       {"sieve", true,
@@ -177,28 +179,27 @@ std::vector<Operator> operators() {
          return query::fill_holes(on.classes, regions, area, on.map, on.graph, p);
        })},
       {"majority, 0.3 %", true,
-       [=](const Subject& on, Progress& progress) {
-         return must(
-             query::majority(on.classes, {0.003 * on.side}, on.map, on.graph, progress, threads));
+       [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+         return query::majority(on.classes, {0.003 * on.side}, on.map, on.graph, progress, threads);
        }},
       {"open, 0.5 %", true,
-       [=](const Subject& on, Progress& progress) {
-         return must(query::open_value(on.classes, 3, 0.005 * on.side, on.map, on.graph, progress,
-                                       threads));
+       [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+         return query::open_value(on.classes, 3, 0.005 * on.side, on.map, on.graph, progress,
+                                  threads);
        }},
       {"close, 0.5 %", true,
-       [=](const Subject& on, Progress& progress) {
-         return must(query::close_value(on.classes, 3, 0.005 * on.side, on.map, on.graph, progress,
-                                        threads));
+       [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+         return query::close_value(on.classes, 3, 0.005 * on.side, on.map, on.graph, progress,
+                                   threads);
        }},
       {"border", true,
-       [=](const Subject& on, Progress& progress) {
-         return as_values(must(query::select_border_line(on.classes, {{}, 0.001 * on.side}, on.map,
-                                                         on.graph, progress, threads)));
+       [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+         return as_values(STRATA_TRY(query::select_border_line(
+             on.classes, {{}, 0.001 * on.side}, on.map, on.graph, progress, threads)));
        }},
       {"pieces", false,
-       [=](const Subject& on, Progress& progress) {
-         auto pieces = must(
+       [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+         auto pieces = STRATA_TRY(
              query::find_pieces(on.classes, {{}, 0, 100'000}, on.map, on.graph, progress, threads));
          // The area of its piece for each texel.
          SurfaceValues areas{std::move(pieces.of_texel), on.map.surface_mask};
@@ -214,27 +215,27 @@ std::vector<Operator> operators() {
       {"variety, 0.5 %", false, focal(query::Focal::variety, true, 0.005)},
       {"hot spots, 0.5 %", false, focal(query::Focal::hot_spot, false, 0.005)},
       {"cracks (valley), 0.2 %", false,
-       [=](const Subject& on, Progress& progress) {
-         return must(query::line_depth_values(query::Line::valley, on.numbers, ValueType::f32,
-                                              0.002 * on.side, on.map, on.graph, "width", progress,
-                                              threads));
+       [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+         return query::line_depth_values(query::Line::valley, on.numbers, ValueType::f32,
+                                         0.002 * on.side, on.map, on.graph, "width", progress,
+                                         threads);
        }},
       {"hysteresis", true,
-       [=](const Subject& on, Progress& progress) {
-         return must(query::hysteresis_values(on.numbers, ValueType::f32, {0.5, 1.0}, on.map,
-                                              on.graph, progress));
+       [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+         return query::hysteresis_values(on.numbers, ValueType::f32, {0.5, 1.0}, on.map, on.graph,
+                                         progress);
        }},
       {"run-off", false,
-       [=](const Subject& on, Progress& progress) {
+       [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
          const std::vector<std::uint64_t> no_drips(on.map.block_of_slot.size(), 0);
-         return must(query::run_off(on.numbers, ValueType::f32, {0, 0, 1}, no_drips, on.map,
-                                    on.graph, progress))
+         return STRATA_TRY(query::run_off(on.numbers, ValueType::f32, {0, 0, 1}, no_drips, on.map,
+                                          on.graph, progress))
              .passing;
        }},
       {"watershed", false,
-       [=](const Subject& on, Progress& progress) {
-         auto basins = must(query::watershed_values(on.numbers, ValueType::f32, 0.2, on.map,
-                                                    on.graph, "height", progress));
+       [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
+         auto basins = STRATA_TRY(query::watershed_values(on.numbers, ValueType::f32, 0.2, on.map,
+                                                          on.graph, "height", progress));
          // The area of its basin for each texel.
          std::vector<float> areas(query::kMaxBasins + 1);
          const auto basin_of = [&](std::uint32_t texel) {
@@ -253,7 +254,7 @@ std::vector<Operator> operators() {
 }
 
 struct Measured {
-  SurfaceValues values;
+  Result<SurfaceValues> values;
   nlohmann::json json;
 };
 
@@ -264,6 +265,11 @@ Measured measure(const Operator& each, const Subject& subject) {
   const double memory_before = memory_mib();
   auto values = watch.run(each.name, progress, [&] { return each.work(subject, progress); });
   const double memory = watch.peak_mib() - memory_before;
+  if (!values) {
+    std::printf("  %-32s refused: %s", each.name, values.error().detail.c_str());
+    nlohmann::json refused{{"operator", each.name}, {"refused", values.error().detail}};
+    return {std::move(values), std::move(refused)};
+  }
   std::printf("  %-32s %8.2f s %8.2f s of processor %7.0f MiB", each.name, watch.seconds(),
               watch.cpu_seconds(), memory);
   return {std::move(values),
@@ -372,10 +378,10 @@ nlohmann::json measure_all(const BenchMesh& mesh, int resolution, const Options&
   for (const Operator& each : operators()) {
     if (!is_chosen(each, options)) continue;
     Measured measured = measure(each, subject);
-    if (other) {
+    if (other && measured.values) {
       Progress progress;
       measured.json["difference"] =
-          difference(each, measured.values, each.work(*other, progress), places);
+          difference(each, *measured.values, must(each.work(*other, progress)), places);
     }
     std::printf("\n");
     std::fflush(stdout);
