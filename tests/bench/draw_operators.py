@@ -16,9 +16,10 @@ import sys
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
-from support.strata_server import StrataServer
+from support.strata_server import StrataServer, wait_for
 
 UP_NORMAL = {"x": "nx", "y": "ny", "z": "nz"}
+LONG_S = 3600
 SIZE = 460  # of a picture, in pixels
 # The axes of the front view, as in server/domain/scene/up.h: to the right, and up.
 AXES = {"x": ((0, 1, 0), (1, 0, 0)), "y": ((1, 0, 0), (0, 1, 0)), "z": ((1, 0, 0), (0, 0, 1))}
@@ -114,14 +115,24 @@ class Sheet:
         self.rows = []
         self.count = 0
 
+    def ended(self, job):
+        """Waits for the end of a job."""
+
+        def state():
+            now = self.server.ok("GET", f"/jobs/{job['id']}").json()
+            return None if now["state"] in ("queued", "running") else now
+
+        done = wait_for(state, f"job {job['id']}", limit_s=LONG_S)
+        assert done["state"] == "done", done
+        return done
+
     def add_layer(self, name, **body):
         """Returns the slug, and the seconds until the layer is durable."""
         start = time.monotonic()
         body = {"name": name, "resolution": self.resolution, **body}
         answer = self.server.ok("POST", self.path + "/layers", body).json()
         if "state" in answer:
-            job = self.server.wait_for_job(answer["id"])
-            assert job["state"] == "done", job
+            job = self.ended(answer)
             slug = self.server.get(f"{self.path}/layers/{job['layers'][0]}").json()["slug"]
         else:
             slug = answer["slug"]
@@ -131,8 +142,7 @@ class Sheet:
         start = time.monotonic()
         self.server.ok("PATCH", f"{self.path}/layers/{slug}", {"locked": False})
         job = self.server.ok("POST", f"{self.path}/layers/{slug}/cleanup", body).json()
-        job = self.server.wait_for_job(job["id"])
-        assert job["state"] == "done", job
+        self.ended(job)
         return time.monotonic() - start
 
     def picture(self, slug):
