@@ -292,7 +292,10 @@ export const laterTexts = {
       ["focal_max(", "el valor mayor en un radio: focal_max(capa, 20)"],
       ["focal_variety(", "cantidad de valores distintos en un radio: focal_variety(capa, 20)"],
       ["hot_spot(", "lo inusual que es la media en un radio: hot_spot(capa, 20)"],
-      ["watershed(", "números de las cuencas, como las piedras entre juntas: watershed(capa, altura)"],
+      [
+        "watershed(",
+        "números de las cuencas, como las piedras entre juntas: watershed(capa, altura)",
+      ],
       ["run_off(", "agua que escurre por la superficie: run_off(lluvia en l/m²)"],
       ["valley(", "profundidad de grietas y surcos de un ancho: valley(capa, 2)"],
       ["ridge(", "altura de líneas elevadas de un ancho: ridge(capa, 2)"],
