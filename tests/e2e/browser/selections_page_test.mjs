@@ -263,6 +263,14 @@ test("strokes inside and outside find a sherd, are undone, accepted and painted"
   ]);
   await next("no_outside").waitFor();
   await shot("strokes_inside");
+  await button(words.strokes.give_up).click();
+  await next("none").waitFor();
+  assert.equal(await strokes.count(), 0, "a discarded stroke is still shown");
+  await browser.drag([
+    [0.44, 0.58],
+    [0.52, 0.6],
+    [0.46, 0.7],
+  ]);
   await page.keyboard.down("Alt");
   await browser.drag([
     [0.28, 0.62],
@@ -287,7 +295,8 @@ test("strokes inside and outside find a sherd, are undone, accepted and painted"
   await page.locator("strata-stage .lit").waitFor();
   await browser.close_notices();
   await shot("strokes_found");
-  await page.keyboard.press("Enter");
+  assert.equal(await button(words.selection.discard).count(), 0, "one cross for two things");
+  await button(words.strokes.accept).click();
   await strokes.first().waitFor({ state: "detached" });
   assert.equal(await shown_m2(), first);
   assert.equal(await painted_m2(), 0, "strokes painted by themselves");

@@ -595,6 +595,7 @@ export class OpenModelSession implements ModelSession {
       strokes.undo();
       return;
     }
+    strokes?.forgetUndone();
     if (kMarkingTools.includes(this.tools.active)) this.marks.undo();
     else this.painting.undo();
   }

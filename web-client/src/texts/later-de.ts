@@ -782,6 +782,8 @@ export const laterTexts = {
     outside_hint: "Striche liegen außerhalb der Fläche, mit Alt darin",
     undo: "Letzten Strich zurücknehmen",
     redo: "Strich wiederherstellen",
+    accept: "Übernehmen",
+    give_up: "Striche verwerfen",
     next: {
       none: "Zeichnen Sie einen Strich in der Fläche.",
       no_inside: "Zeichnen Sie nun einen Strich in der Fläche: Wählen Sie „Innen“.",

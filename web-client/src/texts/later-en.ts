@@ -771,6 +771,8 @@ export const laterTexts = {
     outside_hint: "Strokes are outside of the area, and inside with Alt",
     undo: "Undo last stroke",
     redo: "Redo stroke",
+    accept: "Accept",
+    give_up: "Discard strokes",
     next: {
       none: "Draw a stroke inside the area.",
       no_inside: "Now draw a stroke inside the area: choose Inside.",

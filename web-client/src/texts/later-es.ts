@@ -777,6 +777,8 @@ export const laterTexts = {
     outside_hint: "Los trazos están fuera de la zona y, con Alt, dentro",
     undo: "Deshacer el último trazo",
     redo: "Rehacer el trazo",
+    accept: "Aceptar",
+    give_up: "Descartar trazos",
     next: {
       none: "Dibuje un trazo dentro de la zona.",
       no_inside: "Ahora dibuje un trazo dentro de la zona: elija «Dentro».",

@@ -4,11 +4,13 @@ import type { SessionPart } from "../../src/session/model-session";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { OpenModelSession } from "../../src/shell/open-model-session";
+import { setPartLoads, withPart } from "../../src/shell/page-parts";
 import { notices } from "../../src/ui/notices";
 import { checkConnections, discardUnsaved, unsavedChanges } from "../../src/session/sessions";
 import { texts } from "../../src/texts";
 import type { Selection } from "../../src/features/painting/selection";
-import { selectionOf } from "../../src/features/painting/selection-of";
+import { makeStrokes, selectionOf } from "../../src/features/painting/selection-of";
+import { sharpFrames } from "../../src/features/painting/sharp-frame";
 import { Api } from "../../src/net/api";
 import { presencePalette } from "../../src/domain/palette";
 import type { Role, Welcome } from "../../src/core/protocol.gen";
@@ -354,6 +356,25 @@ describe("edits of whole areas", () => {
     session.chooseTool("brush");
     expect(area.isEmpty).toBe(true);
     expect(edits()).toEqual([]);
+  });
+
+  it("redo restores paint that was undone after the strokes of an area", async () => {
+    setPartLoads({ model_dialogs: async () => ({ makeStrokes, sharpFrames }) } as never);
+    withPart("model_dialogs", () => {});
+    await open();
+    session.chooseTool("strokes");
+    session.gestures.toolDown({ x: 5, y: 5 });
+    session.gestures.toolUp();
+    session.undo();
+    expect(session.strokes!.canRedo).toBe(true);
+    session.undo();
+    session.redo();
+    expect(session.strokes!.isOpen).toBe(false);
+    expect(
+      socket()
+        .sentOps()
+        .filter((op) => op === "undo" || op === "redo"),
+    ).toEqual(["undo", "redo"]);
   });
 
   it("the bucket fills what its panel says, or erases it", async () => {

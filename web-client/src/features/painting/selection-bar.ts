@@ -1,7 +1,9 @@
-// <strata-selection-bar>: a bar over the 3D view while polygon, lasso, wand or strokes have selected an
-// area, and always while strokes are drawn. It shows the area's size and the effect of the next part. Its controls change, save, paint, erase
-// or discard the selection. It is in the page while one of these tools is active, because screen
-// readers announce only changes of an element that already exists.
+// <strata-selection-bar>: a bar over the 3D view while polygon, lasso, wand or strokes have selected
+// an area, and always while the tool for strokes is active. It shows the area's size and the effect
+// of the next part. Its controls change, save, paint, erase or discard the selection. While there are
+// strokes, it only shows their controls, so that it leaves room to draw on a phone. It is in the page
+// while one of these tools is active, because screen readers announce only changes of an element
+// that already exists.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -22,7 +24,7 @@ import { texts } from "../../texts";
 import type { Selection, SelectionMode } from "./selection";
 import "./selection-border";
 import { selectionOf } from "./selection-of";
-import { strokeControls } from "./stroke-controls";
+import { strokeControls, strokeEnds } from "./stroke-controls";
 import type { Strokes } from "./strokes";
 
 const words = texts.selection;
@@ -114,6 +116,13 @@ export class StrataSelectionBar extends LitElement {
         .actions {
           flex-wrap: wrap;
         }
+        .ends strata-menu {
+          display: none; /* a phone always shows the buttons that undo and redo strokes */
+        }
+        output {
+          min-width: 0;
+          padding: 0;
+        }
         .segments {
           flex: initial;
         }
@@ -148,15 +157,26 @@ export class StrataSelectionBar extends LitElement {
   }
 
   private bar(selection: Selection, strokes: Strokes | null): TemplateResult {
+    if (strokes?.isOpen) return this.strokesBar(selection, strokes);
     return html`<div class="bar" role="group" aria-label=${words.title}>
       <div class="parts">
         ${strokes ? strokeControls(strokes) : nothing} ${selection.isEmpty ? nothing : this.parts(selection)}
       </div>
-      ${selection.isEmpty ? nothing : this.actions(selection, strokes)}
+      ${selection.isEmpty ? nothing : this.actions(selection)}
     </div>`;
   }
 
-  private parts(selection: Selection): TemplateResult {
+  private strokesBar(selection: Selection, strokes: Strokes): TemplateResult {
+    const isFound = strokes.state === "found";
+    return html`<div class="bar" role="group" aria-label=${words.title}>
+      <div class="parts">
+        ${strokeControls(strokes)} ${isFound ? this.size(selection) : nothing}
+      </div>
+      ${isFound ? html`<div class="actions ends">${strokeEnds(strokes)} ${this.menu(selection, strokes)}</div>` : nothing}
+    </div>`;
+  }
+
+  private size(selection: Selection): TemplateResult {
     const { measured, unmeasured } = selection;
     const elsewhere = selection.outlines.filter(({ outline }) => !selection.isInView(outline));
     const size = measured
@@ -173,7 +193,11 @@ export class StrataSelectionBar extends LitElement {
           ? words.share(formatPercent(measured.share))
           : "\u00a0";
     return html`<output class="numeric" aria-live="off">${size}<small>${details}</small></output>
-      ${unmeasured ? html`<button @click=${() => selection.measureAgain()}>${texts.try_again}</button>` : nothing}
+      ${unmeasured ? html`<button @click=${() => selection.measureAgain()}>${texts.try_again}</button>` : nothing}`;
+  }
+
+  private parts(selection: Selection): TemplateResult {
+    return html`${this.size(selection)}
       ${radioGroup<SelectionMode>({
         label: words.mode,
         class: "segments",
@@ -188,7 +212,7 @@ export class StrataSelectionBar extends LitElement {
       ${this.session.tools.active === "wand" ? this.tolerance(selection) : nothing}`;
   }
 
-  private actions(selection: Selection, strokes: Strokes | null): TemplateResult {
+  private actions(selection: Selection): TemplateResult {
     const { erases } = this.session.painting.brush.areas;
     const { busy } = selection;
     return html`<div class="actions">
@@ -200,7 +224,7 @@ export class StrataSelectionBar extends LitElement {
       <strata-selection-border .selection=${selection}></strata-selection-border>
       <button class=${erases ? "" : "primary"} ?disabled=${busy} @click=${() => void selection.paint(false)}>${words.fill}</button>
       <button class=${erases ? "primary" : ""} ?disabled=${busy} @click=${() => void selection.paint(true)}>${words.erase}</button>
-      ${this.menu(selection, strokes)}
+      ${this.menu(selection, null)}
       <button class="icon quiet discard" aria-label=${words.discard} title=${words.discard} @click=${() => selection.clear()}>${icon("close")}</button>
       </div>`;
   }
@@ -210,8 +234,8 @@ export class StrataSelectionBar extends LitElement {
       html`<button class="quiet" role="menuitem" ?disabled=${disabled} @click=${act}>${icon(glyph)}${title}</button>`;
     const drawn = texts.strokes;
     return html`<strata-menu label=${words.more}>
-      ${strokes?.isOpen ? item("undo", drawn.undo, () => strokes.undo()) : item("undo", words.undo, () => selection.undo(), !selection.canUndo)}
-      ${strokes?.isOpen ? item("redo", drawn.redo, () => strokes.redo(), !strokes.canRedo) : item("redo", words.redo, () => selection.redo(), !selection.canRedo)}
+      ${strokes ? item("undo", drawn.undo, () => strokes.undo()) : item("undo", words.undo, () => selection.undo(), !selection.canUndo)}
+      ${strokes ? item("redo", drawn.redo, () => strokes.redo(), !strokes.canRedo) : item("redo", words.redo, () => selection.redo(), !selection.canRedo)}
       ${this.recordItems(selection, item)}
       <hr />
       ${item("chart", words.statistics, () => this.request("selection-statistics"))}

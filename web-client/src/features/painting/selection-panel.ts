@@ -1,5 +1,6 @@
 // <strata-selection-panel>: the keys of the selection, and the saved selections, in the options of
-// polygon, lasso, wand and strokes. While an area is selected, also the values of the layer inside it.
+// polygon, lasso, wand and strokes. While an area is selected, also the values of the layer inside
+// it.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,7 +1,8 @@
-// The area that polygon, lasso, wand and strokes select together. It consists of parts that are combined in
-// their order, and of changes to its border. The points of an outline are pixels in the window of
-// the camera with which it was drawn. The 3D view highlights the area until it is painted, erased or
-// discarded. Corners of an outline can be moved while the 3D view shows the view of this outline.
+// The area that polygon, lasso, wand and strokes select together. It consists of parts that are
+// combined in their order, and of changes to its border. The points of an outline are pixels in the
+// window of the camera with which it was drawn. The 3D view highlights the area until it is painted,
+// erased or discarded. Corners of an outline can be moved while the 3D view shows the view of this
+// outline.
 
 import type { Combination, Like, SelectResponse, Within } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";

@@ -16,7 +16,7 @@ export class StrokesTool implements Tool {
 
   activate(): void {}
   deactivate(): void {
-    this._host.strokes()?.accept();
+    this._host.strokes()?.leave();
   }
   down(sample: PointerSample): void {
     this._host.strokes()?.down(sample);

@@ -1,7 +1,7 @@
 // Strokes inside and outside of an area, from which the page finds the area in the shown frame. The
 // area is the next part of the selection, and follows each stroke until it is accepted. Strokes are
-// pixels in the window of the camera at the first stroke. They end when the camera or another part of
-// the selection changes. Their area stays selected then.
+// pixels in the window of the camera at the first stroke. They end when the camera or another part
+// of the selection changes. Their area stays selected then.
 
 import type { Within } from "../../core/protocol.gen";
 import type { CameraMessage } from "../../math/camera";
@@ -12,10 +12,7 @@ import type { SharpFrame } from "./sharp-frame";
 import { areaOfStrokes, type AreaRing, type AreaStroke } from "./stroke-area";
 
 export interface StrokesHost {
-  readonly selection: Pick<
-    Selection,
-    "propose" | "acceptProposed" | "isProposed" | "key" | "isEmpty"
-  >;
+  readonly selection: Pick<Selection, "propose" | "acceptProposed" | "steps" | "key">;
   /** Returns null while the 3D view shows no such frame. */
   frame(): SharpFrame | null;
   camera(): CameraMessage;
@@ -32,7 +29,10 @@ export interface StrokesHost {
   changed(): void;
 }
 
-/** What the user can do next. `searching`: the area follows soon. */
+/**
+ * What the user can do next. `searching`: the area follows soon. `found`: there is an area, which
+ * can be older than the last stroke for a moment.
+ */
 export type StrokesState = "none" | "no_inside" | "no_outside" | "searching" | "nothing" | "found";
 
 /** The radius of a stroke in CSS pixels. */
@@ -46,8 +46,10 @@ export class Strokes {
   private _undone: AreaStroke[] = [];
   private _drawing: { inside: boolean; path: Point[] } | null = null;
   private _camera = ""; // of the drawn strokes
+  private _steps: Selection["steps"] = []; // of the selection, as the strokes left it
   private _adds = false; // whether Shift was held at the first stroke
   private _state: StrokesState = "none";
+  private _pending = false; // whether the strokes have changed since their area was found
   private _waits = false;
 
   constructor(private readonly _host: StrokesHost) {}
@@ -80,6 +82,7 @@ export class Strokes {
     if (!this._host.begin(sample)) return;
     if (this._drawn.length === 0) {
       this._camera = JSON.stringify(this._host.camera());
+      this._steps = this._host.selection.steps;
       this._adds = sample.shift ?? false;
     }
     const inside = sample.alt ? !this.drawsInside : this.drawsInside;
@@ -111,6 +114,7 @@ export class Strokes {
     if (!this._drawing) return;
     this._drawing = null;
     this._host.ended();
+    if (this._pending) this.wait();
     this._host.changed();
   }
 
@@ -130,17 +134,31 @@ export class Strokes {
     this.follow();
   }
 
-  /** Ends the strokes. Their area stays selected. */
+  /** Call this when the user undoes something else, because redo must then restore that first. */
+  forgetUndone(): void {
+    this._undone = [];
+    this._host.changed();
+  }
+
+  /** Ends the strokes if they have an area, which stays selected. */
   accept(): void {
     this.cancel();
-    this.end();
-    this._host.changed();
+    this.search();
+    if (this.state === "found") this.finish();
+  }
+
+  /** Ends the strokes. If they have an area, it stays selected. */
+  leave(): void {
+    this.cancel();
+    this.search();
+    this.finish();
   }
 
   /** Removes the strokes and their area. */
   giveUp(): void {
-    if (this.isCurrent) this._host.selection.propose(null);
-    this.accept();
+    this.cancel();
+    if (this.isOpen) this._host.selection.propose(null);
+    this.finish();
   }
 
   key(key: string): boolean {
@@ -150,8 +168,13 @@ export class Strokes {
     else if (key === "Escape") this.giveUp();
     else if (key === "Backspace" || key === "Delete") this.undo();
     else if (key !== "Enter") return false;
-    else if (this._state === "found") this.accept();
+    else this.accept();
     return true;
+  }
+
+  private finish(): void {
+    this.end();
+    this._host.changed();
   }
 
   private end(): void {
@@ -159,16 +182,14 @@ export class Strokes {
     this._drawn = [];
     this._undone = [];
     this._state = "none";
+    this._pending = false;
   }
 
-  /**
-   * Whether the view is that of the strokes, and the selection has not changed since their area was
-   * found.
-   */
+  /** Whether the view is that of the strokes, and only they have changed the selection since. */
   private get isCurrent(): boolean {
     return (
       this._camera === JSON.stringify(this._host.camera()) &&
-      (this._state !== "found" || this._host.selection.isProposed)
+      this._steps === this._host.selection.steps
     );
   }
 
@@ -176,7 +197,8 @@ export class Strokes {
   private follow(): void {
     const hasInside = this._drawn.some(({ inside }) => inside);
     const hasOutside = this._drawn.some(({ inside }) => !inside);
-    if (hasInside && hasOutside) {
+    this._pending = hasInside && hasOutside;
+    if (this._pending) {
       // While the area is searched, the old one is shown.
       if (this._state !== "found") this._state = "searching";
       this.wait();
@@ -192,21 +214,27 @@ export class Strokes {
     this._waits = true;
     this._host.later(() => {
       this._waits = false;
-      // The next stroke finds the area again when it ends.
-      if (this.isOpen && !this._drawing) this.search();
+      // The end of the next stroke continues the search.
+      if (!this._drawing) this.search();
     });
   }
 
+  /** Finds the area now if it is pending. Without a frame, the search continues later. */
   private search(): void {
-    const hasBoth = [true, false].every((side) =>
-      this._drawn.some(({ inside }) => inside === side),
-    );
-    if (!hasBoth) return;
+    if (!this._pending) return;
+    if (!this.isCurrent) {
+      this.end();
+      return;
+    }
     const frame = this._host.frame();
     if (!frame) {
       this.wait();
+      if (this._state === "searching") return;
+      this._state = "searching";
+      this._host.changed();
       return;
     }
+    this._pending = false;
     const camera = this._host.camera();
     const [across, down] = [frame.width / camera.width, frame.height / camera.height];
     const inFrame = this._drawn.map(({ inside, path }) => ({
@@ -227,6 +255,7 @@ export class Strokes {
     const { selection } = this._host;
     const within = withinRings(rings, this._host.camera(), this._host.through());
     selection.propose(within, { shift: this._adds });
+    this._steps = selection.steps;
     this._state = within ? "found" : "nothing";
   }
 }

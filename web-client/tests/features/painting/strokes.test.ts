@@ -70,11 +70,15 @@ beforeEach(() => {
 const wait = (): void => {
   for (const callback of later.splice(0)) callback();
 };
-const draw = (path: Point[], keys: Partial<PointerSample> = {}): void => {
+/** Draws a stroke. Its area is not searched yet. */
+const drawOnly = (path: Point[], keys: Partial<PointerSample> = {}): void => {
   const [[x, y], ...rest] = path as [Point, ...Point[]];
   strokes.down({ x, y, ...keys });
   for (const [nextX, nextY] of rest) strokes.move([{ x: nextX, y: nextY }]);
   strokes.up();
+};
+const draw = (path: Point[], keys: Partial<PointerSample> = {}): void => {
+  drawOnly(path, keys);
   wait();
 };
 const onRing: Point[] = [
@@ -89,6 +93,14 @@ const inHole: Point[] = [[200, 200]];
 const drawRing = (keys: Partial<PointerSample> = {}): void => {
   draw(onRing, keys);
   draw(around, { alt: true });
+};
+/** Returns the steps of an area that a third stroke has changed. Then there are no strokes. */
+const areaWithPartOfHole = (): Selection["steps"] => {
+  drawRing();
+  draw(inHole);
+  const { steps } = selection;
+  strokes.giveUp();
+  return steps;
 };
 const square: Point[] = [
   [0, 0],
@@ -186,6 +198,49 @@ describe("strokes inside and outside", () => {
     expect(painted).toHaveLength(1);
   });
 
+  it("are accepted with the area of the last stroke, which is not found yet", () => {
+    const ofThree = areaWithPartOfHole();
+    for (const end of [() => strokes.key("Enter"), () => strokes.leave()]) {
+      drawRing();
+      expect(selection.steps).not.toEqual(ofThree);
+      drawOnly(inHole);
+      end();
+      wait();
+      expect(strokes.isOpen).toBe(false);
+      expect(selection.steps).toEqual(ofThree);
+    }
+  });
+
+  it("are not accepted before the area of the last stroke can be found", () => {
+    const ofThree = areaWithPartOfHole();
+    drawRing();
+    const sharp = frame;
+    frame = null;
+    drawOnly(inHole);
+    strokes.accept();
+    expect([strokes.state, strokes.isOpen]).toEqual(["searching", true]);
+    frame = sharp;
+    wait();
+    strokes.accept();
+    expect(strokes.isOpen).toBe(false);
+    expect(selection.steps).toEqual(ofThree);
+  });
+
+  it("are not accepted without an area", () => {
+    drawRing();
+    drawOnly(around);
+    strokes.accept();
+    expect([strokes.state, strokes.isOpen]).toEqual(["nothing", true]);
+  });
+
+  it("are given up with their area even if it is searched again", () => {
+    drawRing();
+    drawOnly(inHole);
+    strokes.giveUp();
+    wait();
+    expect([strokes.isOpen, selection.isEmpty]).toEqual([false, true]);
+  });
+
   it("are given up with Escape, with their area; the next Escape clears the selection", () => {
     addSquare();
     const { steps } = selection;
@@ -230,6 +285,34 @@ describe("strokes inside and outside", () => {
     expect(selection.steps).toHaveLength(2);
   });
 
+  it("end when the selection changes otherwise before they have an area", () => {
+    draw(onRing);
+    addSquare();
+    expect([strokes.isOpen, strokes.shown]).toEqual([false, []]);
+    draw(onRing);
+    drawOnly(around, { alt: true });
+    selection.clear();
+    wait();
+    expect([strokes.isOpen, selection.isEmpty]).toEqual([false, true]);
+  });
+
+  it("are redone only until something else is undone", () => {
+    draw(onRing);
+    strokes.undo();
+    expect(strokes.canRedo).toBe(true);
+    strokes.forgetUndone();
+    expect(strokes.canRedo).toBe(false);
+  });
+
+  it("end when the camera moves during the search", () => {
+    draw(onRing);
+    drawOnly(around, { alt: true });
+    seen = camera(2);
+    wait();
+    seen = camera(1);
+    expect([strokes.isOpen, selection.isEmpty]).toEqual([false, true]);
+  });
+
   it("wait for a frame of the current view", () => {
     const sharp = frame;
     frame = null;
@@ -251,6 +334,20 @@ describe("strokes inside and outside", () => {
     strokes.up();
     wait();
     expect(strokes.state).toBe("found");
+  });
+
+  it("are searched after the next stroke is canceled", () => {
+    for (const cancel of [() => strokes.cancel(), () => strokes.key("Escape")]) {
+      draw(onRing);
+      drawOnly(around, { alt: true });
+      strokes.down({ x: 380, y: 20 });
+      wait();
+      expect(strokes.state).toBe("searching");
+      cancel();
+      wait();
+      expect(strokes.state).toBe("found");
+      strokes.giveUp();
+    }
   });
 
   it("do not begin if painting is not possible, and a second finger cancels a stroke", () => {
