@@ -24,7 +24,7 @@ using mesh::Way;
 
 constexpr const char* kRunning = "Letting water run down";
 
-// The directions in which texels lie beside each other. Links are one direction more.
+// The directions in which a texel has neighbors. Links are one direction more.
 enum Direction { along_rows, along_columns, across_seams, directions };
 
 class Water {
@@ -161,7 +161,7 @@ class Water {
   };
 
   // Finds the lower neighbors of a texel, and the length across the way of the water. Returns false
-  // if there are none: in a hollow, and at an outlet.
+  // without a lower neighbor: in a hollow, and at an outlet.
   bool outflows_of(std::uint32_t texel) {
     outflows_.clear();
     const auto sides = sides_of(texel);

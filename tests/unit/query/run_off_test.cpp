@@ -143,7 +143,7 @@ TEST(RunOff, of_a_cone_is_half_the_way) {
 
 TEST(RunOff, fills_hollows_and_runs_over) {
   for (const Cuts& cuts : kAtlases) {
-    // Dents deep enough that water stands in them.
+    // Dents deep enough to hold water.
     const Surface surface = wall(cuts, 1.2, [](double s, double t) {
       return 4 * std::sin(9 * std::numbers::pi * s) * std::sin(7 * std::numbers::pi * t);
     });
