@@ -16,7 +16,7 @@ import sys
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
-from support.strata_server import StrataServer, wait_for
+from support.strata_server import StrataServer
 
 UP_NORMAL = {"x": "nx", "y": "ny", "z": "nz"}
 LONG_S = 3600
@@ -116,13 +116,7 @@ class Sheet:
         self.count = 0
 
     def ended(self, job):
-        """Waits for the end of a job."""
-
-        def state():
-            now = self.server.ok("GET", f"/jobs/{job['id']}").json()
-            return None if now["state"] in ("queued", "running") else now
-
-        done = wait_for(state, f"job {job['id']}", limit_s=LONG_S)
+        done = self.server.wait_for_job(job["id"], LONG_S)
         assert done["state"] == "done", done
         return done
 

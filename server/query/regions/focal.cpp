@@ -1,7 +1,6 @@
 #include "query/regions/focal.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include "core/progress.h"
 #include "mesh/parallel.h"
 #include "mesh/texels/texel_graph.h"
+#include "query/regions/parallel_values.h"
 #include "query/regions/row_runs.h"
 #include "query/regions/texel_discs.h"
 #include "query/regions/value_areas.h"
@@ -217,33 +217,11 @@ struct Share {
   double from = 0, to = 1;
 };
 
-// Computes `make_discs().at(texel)` for each surface texel, with one object for each part of the
-// work.
 template <class MakeDiscs>
 Result<SurfaceValues> compute_discs(const Input& input, Progress& progress, int threads,
                                     MakeDiscs make_discs, Share share = {}) {
-  constexpr std::size_t kSlotsAtOnce = 256;
-  const std::size_t slots = input.map.block_of_slot.size();
-  SurfaceValues result{std::vector<std::uint32_t>(slots * 64), std::vector<std::uint64_t>(slots)};
-  const std::size_t parts = (slots + kSlotsAtOnce - 1) / kSlotsAtOnce;
-  std::atomic<std::size_t> done{0};
-  mesh::parallel_for(threads, static_cast<int>(parts), [&](int number) {
-    auto discs = make_discs();
-    const std::size_t first = static_cast<std::size_t>(number) * kSlotsAtOnce;
-    for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot) {
-      for (std::uint64_t left = input.map.surface_mask[slot]; left != 0; left &= left - 1) {
-        if (progress.cancelled()) return;
-        const auto texel = static_cast<std::uint32_t>(
-            slot * 64 + static_cast<std::size_t>(std::countr_zero(left)));
-        if (const auto value = discs.at(texel))
-          result.set(texel, {std::bit_cast<std::uint32_t>(*value), true});
-      }
-    }
-    progress.report(share.from + (share.to - share.from) * double(++done) / double(parts),
-                    "Comparing neighborhoods");
-  });
-  if (progress.cancelled()) return cancelled_problem();
-  return result;
+  return compute_values(input.map.surface_mask, progress, threads,
+                        {"Comparing neighborhoods", share.from, share.to}, make_discs);
 }
 
 template <class Part>

@@ -5,7 +5,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -14,8 +13,8 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "mesh/parallel.h"
 #include "mesh/texels/texel_graph.h"
+#include "query/regions/parallel_values.h"
 #include "query/regions/texel_discs.h"
 
 namespace strata::query {
@@ -291,26 +290,8 @@ Result<SurfaceValues> line_depth_values(Line line, const SurfaceValues& values, 
   if (!(width >= kMinLineTexels * texel_size && width <= kMaxLineTexels * texel_size))
     return refused_width(map, field);
   const Input input = read_input(line, values, type, map, graph);
-  constexpr std::size_t kSlotsAtOnce = 256;
-  const std::size_t slots = map.block_of_slot.size();
-  SurfaceValues result{std::vector<std::uint32_t>(slots * 64), std::vector<std::uint64_t>(slots)};
-  const std::size_t parts = (slots + kSlotsAtOnce - 1) / kSlotsAtOnce;
-  std::atomic<std::size_t> done{0};
-  mesh::parallel_for(threads, static_cast<int>(parts), [&](int number) {
-    LineFit fit(input, width);
-    const std::size_t first = static_cast<std::size_t>(number) * kSlotsAtOnce;
-    for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot)
-      for (std::uint64_t left = input.valid[slot]; left != 0; left &= left - 1) {
-        if (progress.cancelled()) return;
-        const auto texel = static_cast<std::uint32_t>(
-            slot * 64 + static_cast<std::size_t>(std::countr_zero(left)));
-        if (const auto depth = fit.at(texel))
-          result.set(texel, {std::bit_cast<std::uint32_t>(*depth), true});
-      }
-    progress.report(double(++done) / double(parts), "Finding lines");
-  });
-  if (progress.cancelled()) return cancelled_problem();
-  return result;
+  return compute_values(input.valid, progress, threads, {"Finding lines"},
+                        [&] { return LineFit(input, width); });
 }
 
 }  // namespace strata::query

@@ -8,8 +8,9 @@
 
 namespace strata::query {
 
-// Sets of connected texels, as flat trees: union-find (Tarjan 1975) with path halving. The root of
-// a set is its lowest texel, so the result does not depend on the order of the joins.
+// Sets of connected texels, as flat trees: union-find (Tarjan 1975) with path halving. `join` makes
+// the lowest texel the root of a set, so the result does not depend on the order of the joins.
+// `attach` lets the caller choose the root.
 class TexelSets {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -23,15 +24,17 @@ class TexelSets {
     b = root(b);
     if (a != b) parent_[std::max(a, b)] = std::min(a, b);
   }
-  // Returns the parent of each texel: a root, itself, or a lower texel of its set. kNone if the
-  // texel was not added.
-  std::vector<std::uint32_t> take_parents() && { return std::move(parent_); }
-
- private:
+  // Joins a root, or a texel that was not added, to the set of another root, which stays.
+  void attach(std::uint32_t texel, std::uint32_t to) { parent_[texel] = to; }
   std::uint32_t root(std::uint32_t texel) {
     while (parent_[texel] != texel) texel = parent_[texel] = parent_[parent_[texel]];
     return texel;
   }
+  // After joins only: returns the parent of each texel: a root, itself, or a lower texel of its
+  // set. kNone if the texel was not added.
+  std::vector<std::uint32_t> take_parents() && { return std::move(parent_); }
+
+ private:
   std::vector<std::uint32_t> parent_;
 };
 

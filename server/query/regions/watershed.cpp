@@ -11,6 +11,7 @@
 
 #include "core/progress.h"
 #include "mesh/texels/texel_graph.h"
+#include "query/regions/texel_sets.h"
 
 namespace strata::query {
 namespace {
@@ -24,26 +25,6 @@ std::uint32_t ordered(float number) {
   const auto bits = std::bit_cast<std::uint32_t>(number);
   return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
 }
-
-// The basins while the surface is flooded: a tree of texels for each, with its lowest texel as the
-// root.
-class Basins {
- public:
-  explicit Basins(std::size_t texels) : parent_(texels, kNoNeighbour) {}
-
-  bool is_flooded(std::uint32_t texel) const { return parent_[texel] != kNoNeighbour; }
-  void begin(std::uint32_t texel) { parent_[texel] = texel; }
-  void add(std::uint32_t texel, std::uint32_t to) { parent_[texel] = to; }
-  std::uint32_t root_of(std::uint32_t texel) {
-    std::uint32_t root = texel;
-    while (parent_[root] != root) root = parent_[root];
-    while (parent_[texel] != root) texel = std::exchange(parent_[texel], root);
-    return root;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 struct Flood {
   std::vector<float> numbers;
@@ -95,9 +76,9 @@ tl::unexpected<Error> too_many_basins(std::size_t max_basins, const std::string&
 }
 
 // Numbers the basins by area, the largest first, then by the lowest texel.
-Result<SurfaceValues> number_basins(const Flood& flood, Basins& basins, const mesh::SurfaceMap& map,
-                                    std::size_t max_basins, const std::string& field,
-                                    Progress& progress) {
+Result<SurfaceValues> number_basins(const Flood& flood, TexelSets& basins,
+                                    const mesh::SurfaceMap& map, std::size_t max_basins,
+                                    const std::string& field, Progress& progress) {
   const std::size_t slots = map.block_of_slot.size();
   SurfaceValues result{std::vector<std::uint32_t>(slots * 64), std::vector<std::uint64_t>(slots)};
   std::vector<std::uint32_t> roots;
@@ -113,7 +94,7 @@ Result<SurfaceValues> number_basins(const Flood& flood, Basins& basins, const me
   };
   // The index of each basin is at its root, until its number is known.
   if (!for_each_texel(0.85, [&](std::uint32_t texel) {
-        if (basins.root_of(texel) != texel || roots.size() > max_basins) return;
+        if (basins.root(texel) != texel || roots.size() > max_basins) return;
         result.bits[texel] = static_cast<std::uint32_t>(roots.size());
         roots.push_back(texel);
       }))
@@ -121,7 +102,7 @@ Result<SurfaceValues> number_basins(const Flood& flood, Basins& basins, const me
   if (roots.size() > max_basins) return too_many_basins(max_basins, field);
   std::vector<double> area(roots.size(), 0);
   if (!for_each_texel(0.9, [&](std::uint32_t texel) {
-        area[result.bits[basins.root_of(texel)]] += double{map.area[texel]};
+        area[result.bits[basins.root(texel)]] += double{map.area[texel]};
       }))
     return cancelled_problem();
   std::vector<std::uint32_t> by_area(roots.size()), number(roots.size());
@@ -132,7 +113,7 @@ Result<SurfaceValues> number_basins(const Flood& flood, Basins& basins, const me
   for (std::uint32_t i = 0; i < by_area.size(); ++i)
     number[by_area[i]] = std::bit_cast<std::uint32_t>(static_cast<float>(i + 1));
   if (!for_each_texel(0.95, [&](std::uint32_t texel) {
-        const std::uint32_t root = basins.root_of(texel);
+        const std::uint32_t root = basins.root(texel);
         if (root != texel) result.set(texel, {number[result.bits[root]], true});
       }))
     return cancelled_problem();
@@ -151,7 +132,7 @@ Result<SurfaceValues> watershed_values(const SurfaceValues& values, ValueType ty
   const auto depth_of = [&](std::uint32_t root, float at) {
     return double{at} - double{flood.numbers[root]};
   };
-  Basins basins(values.bits.size());
+  TexelSets basins(values.bits.size());  // their roots are their lowest places
   std::size_t done = 0;
   for (const std::uint64_t each : flood.order) {
     if (done++ % kTexelsAtOnce == 0) {
@@ -162,25 +143,25 @@ Result<SurfaceValues> watershed_values(const SurfaceValues& values, ValueType ty
     const float number = flood.numbers[texel];
     std::uint32_t lowest = kNoNeighbour;
     mesh::for_each_neighbour(map, graph, texel, [&](std::uint32_t other) {
-      if (!basins.is_flooded(other)) return;
+      if (!basins.has(other)) return;
       if (lowest == kNoNeighbour ||
           std::pair(flood.numbers[other], other) < std::pair(flood.numbers[lowest], lowest))
         lowest = other;
     });
     if (lowest == kNoNeighbour) {
-      basins.begin(texel);
+      basins.add(texel);
       continue;
     }
-    basins.add(texel, basins.root_of(lowest));
+    basins.attach(texel, basins.root(lowest));
     mesh::for_each_neighbour(map, graph, texel, [&](std::uint32_t other) {
-      if (!basins.is_flooded(other)) return;
-      const std::uint32_t here = basins.root_of(texel), there = basins.root_of(other);
+      if (!basins.has(other)) return;
+      const std::uint32_t here = basins.root(texel), there = basins.root(other);
       if (here == there) return;
       const bool here_is_deeper =
           std::pair(flood.numbers[here], here) < std::pair(flood.numbers[there], there);
       const std::uint32_t shallow = here_is_deeper ? there : here;
       const double depth = depth_of(shallow, number);
-      if (depth < height || depth == 0) basins.add(shallow, here_is_deeper ? here : there);
+      if (depth < height || depth == 0) basins.attach(shallow, here_is_deeper ? here : there);
     });
   }
   return number_basins(flood, basins, map, max_basins, field, progress);

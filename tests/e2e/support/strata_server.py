@@ -316,12 +316,13 @@ class StrataServer(Requests):
             if connection is None:
                 link.close()
 
-    def wait_for_job(self, job):
+    def wait_for_job(self, job, limit_s=LONG_S):
         return wait_for(
             lambda: (lambda now: now if now["state"] not in ("queued", "running") else None)(
                 self.ok("GET", f"/jobs/{job}").json()
             ),
             f"job {job}",
+            limit_s,
         )
 
     def add_person(self, user, role):
