@@ -2,8 +2,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "core/ids.h"
@@ -49,9 +52,36 @@ class Progress {
   JobId job() const { return job_; }
   void set_job(JobId job) { job_ = job; }  // call before the work begins
 
-  void cancel() { cancelled_ = true; }
+  void cancel() {
+    std::lock_guard lock(mutex_);
+    cancelled_ = true;
+    for (const auto* watcher : watchers_) watcher->stop_();
+  }
   // Tests override it to cancel at a chosen place.
   virtual bool cancelled() const { return cancelled_; }
+
+  // Calls `stop` if the task has been cancelled, or as soon as it is cancelled during the lifetime
+  // of this object. For work that does not ask `cancelled()`. `stop` must not use the Progress.
+  class WhenCancelled {
+   public:
+    WhenCancelled(Progress& progress, std::function<void()> stop)
+        : progress_(progress), stop_(std::move(stop)) {
+      std::lock_guard lock(progress_.mutex_);
+      progress_.watchers_.push_back(this);
+      if (progress_.cancelled_) stop_();
+    }
+    ~WhenCancelled() {
+      std::lock_guard lock(progress_.mutex_);
+      std::erase(progress_.watchers_, this);
+    }
+    WhenCancelled(const WhenCancelled&) = delete;
+    WhenCancelled& operator=(const WhenCancelled&) = delete;
+
+   private:
+    friend class Progress;
+    Progress& progress_;
+    const std::function<void()> stop_;
+  };
 
  private:
   void set(double fraction, std::string message) {
@@ -68,6 +98,7 @@ class Progress {
   double fraction_ = 0;
   std::string message_;
   std::atomic<bool> cancelled_{false};
+  std::vector<const WhenCancelled*> watchers_;
   JobId job_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include "app/layers/computed_layers.h"
 #include "app/layers/formula_layers.h"
 #include "core/overloaded.h"
+#include "domain/people/question.h"
 #include "expression/expression_parser.h"
 #include "room/edits.h"
 #include "room/layers.h"
@@ -94,7 +95,24 @@ Result<AnalysisResult> run(const Services& services, const std::shared_ptr<room:
   return result;
 }
 
-Result<AnalysisResult> run(room::Room& room, const Measure& step) {
+// The computation of statistics checks a question and not a Progress.
+Result<query::Statistics> statistics(room::Room& room, const std::string& layer,
+                                     const room::Selection& selection,
+                                     const room::StatisticsOptions& options, const Author& author,
+                                     Progress& progress) {
+  const auto question = std::make_shared<Question>(author.user, QuestionLimits{}, nullptr);
+  const Progress::WhenCancelled when_cancelled(
+      progress, [question] { question->end(cancelled_problem().value()); });
+  const Question::Scope scope(question);
+  try {
+    return room.queries().statistics(layer, selection, options);
+  } catch (const QuestionEnded& ended) {
+    return tl::unexpected(ended.problem());
+  }
+}
+
+Result<AnalysisResult> run(room::Room& room, const Measure& step, const Author& author,
+                           Progress& progress) {
   AnalysisResult result;
   result.layer = STRATA_TRY(room.layers().find(step.layer));
   room::Selection selection;
@@ -107,8 +125,9 @@ Result<AnalysisResult> run(room::Room& room, const Measure& step) {
   result.inputs = inputs_of(room, slugs);
   // A state that others can read again, even if edits follow during the computation.
   selection.at = result.sequence = room.edits().durable_sequence();
+  progress.report(0, "Measuring the layer");
   result.statistics =
-      STRATA_TRY(room.queries().statistics(result.layer.slug, selection, step.options));
+      STRATA_TRY(statistics(room, result.layer.slug, selection, step.options, author, progress));
   return result;
 }
 
@@ -152,14 +171,14 @@ Result<std::vector<AnalysisResult>> run_analysis(const Services& services,
     if (progress.cancelled()) return cancelled_problem();
     progress.begin_part(number, count);
     const AnalysisStep& step = analysis.steps[number - 1];
-    auto result =
-        std::visit(Overloaded{[&](const Compute& compute) {
-                                return run(services, room, compute,
-                                           {analysis.name, number, count, progress.job()}, author,
-                                           layers, progress);
-                              },
-                              [&](const Measure& measure) { return run(*room, measure); }},
-                   step.work);
+    auto result = std::visit(
+        Overloaded{[&](const Compute& compute) {
+                     return run(services, room, compute,
+                                {analysis.name, number, count, progress.job()}, author, layers,
+                                progress);
+                   },
+                   [&](const Measure& measure) { return run(*room, measure, author, progress); }},
+        step.work);
     if (!result && result.error().code == ErrorCode::cancelled)
       return tl::unexpected(std::move(result.error()));
     if (!result) {

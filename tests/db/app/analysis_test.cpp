@@ -24,6 +24,22 @@ class CancelledAtLayers final : public Progress {
   std::size_t layers_;
 };
 
+// Is cancelled when the room has this number of layers, but only those who watch it find out.
+class CancelledForWatchers final : public Progress {
+ public:
+  CancelledForWatchers(std::shared_ptr<room::Room> room, std::size_t layers)
+      : room_(std::move(room)), layers_(layers) {}
+  bool cancelled() const override {
+    if (room_->layers().all().size() >= layers_) self_.cancel();
+    return false;
+  }
+
+ private:
+  std::shared_ptr<room::Room> room_;
+  std::size_t layers_;
+  Progress& self_ = *this;
+};
+
 class Analyses : public test::RoomTest {
  protected:
   void SetUp() override {
@@ -165,6 +181,17 @@ TEST_F(Analyses, a_cancelled_analysis_takes_back_the_layers_of_all_steps) {
   ASSERT_FALSE(results);
   EXPECT_EQ(results.error().code, ErrorCode::cancelled);
   EXPECT_EQ(progress.message(), "Step 2 of 3");
+  EXPECT_EQ(slugs(), std::vector<std::string>{"cracks"});
+}
+
+TEST_F(Analyses, statistics_end_when_the_analysis_is_cancelled) {
+  ASSERT_TRUE(add(compute("twice", "cracks * 2")));
+  ASSERT_TRUE(add(measure("twice", "cracks > 1")));
+  CancelledForWatchers progress(room(), 2);  // after the first step
+  const auto results = run(progress);
+  ASSERT_FALSE(results);
+  EXPECT_EQ(results.error().code, ErrorCode::cancelled);
+  EXPECT_EQ(progress.message(), "Step 2 of 2: Measuring the layer");
   EXPECT_EQ(slugs(), std::vector<std::string>{"cracks"});
 }
 

@@ -38,5 +38,22 @@ TEST(ProgressReports, a_task_with_one_part_has_no_number) {
   EXPECT_EQ(progress.message(), "Reading");
 }
 
+TEST(ProgressReports, a_watcher_is_called_once_when_the_task_is_cancelled) {
+  Progress progress;
+  int early = 0, during = 0, late = 0;
+  {
+    const Progress::WhenCancelled gone(progress, [&] { ++early; });
+  }
+  {
+    const Progress::WhenCancelled watcher(progress, [&] { ++during; });
+    EXPECT_EQ(during, 0);
+    progress.cancel();
+  }
+  const Progress::WhenCancelled after(progress, [&] { ++late; });
+  EXPECT_EQ(early, 0);
+  EXPECT_EQ(during, 1);
+  EXPECT_EQ(late, 1);
+}
+
 }  // namespace
 }  // namespace strata
