@@ -67,6 +67,12 @@ struct Expression {
     ridge,          // the height of lines of high values, likewise
     // 1 where the first part is above the second, in a connected piece with a value above `number`.
     hysteresis,
+    // Clean-ups of a number, or of a condition, whose result is 1 or unknown.
+    sieve,       // without regions whose area is less than `number`, in square model units
+    fill_holes,  // with the value around them in holes of less than this area
+    majority,    // the most frequent value at the texels around
+    opening,     // of a condition: without parts narrower than `number`
+    closing,     // of a condition: with gaps narrower than `number`
     // Along the surface, from the readings of a number (query/interpolation/interpolate) and the
     // range `number`.
     interpolated,         // the expected value

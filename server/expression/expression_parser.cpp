@@ -555,7 +555,10 @@ class Parser {
 
   Expression within() {
     const auto at = token_.at;
-    return make(Op::known, at, surface_function({Op::distance, "within"}));
+    return make(Op::known, at,
+                surface_function({.op = Op::distance,
+                                  .name = "within",
+                                  .argument = NamedSurfaceFunction::Argument::condition}));
   }
 
   Expression hysteresis() {
@@ -607,19 +610,26 @@ class Parser {
     if (names_ == Names::columns) return refuse_surface();
     advance();
     expect("(");
-    const auto part_at = token_.at;
-    Expression part = disjunction();
-    part =
-        op == Op::distance ? source(std::move(part), part_at) : numeric(std::move(part), part_at);
+    Expression part = surface_argument(named.argument);
+    const bool cleans_condition = op != Op::distance && part.is_condition();
     Expression function = make(op, at, std::move(part));
     function.number = std::numeric_limits<double>::infinity();
     using Limit = NamedSurfaceFunction::Limit;
     if (named.limit == Limit::needed && !is(","))
-      refuse("Expected ',' and a " + std::string(named.limit_name));
+      refuse("Expected ',' and " + std::string(named.limit_name == "area" ? "an " : "a ") +
+             std::string(named.limit_name));
     if (named.limit != Limit::none && take(",")) function.number = limit(named);
     expect(")");
     function.position = position(at, name_end);
-    return function;
+    return cleans_condition ? make(Op::known, at, std::move(function)) : function;
+  }
+
+  Expression surface_argument(NamedSurfaceFunction::Argument kind) {
+    const auto at = token_.at;
+    Expression part = disjunction();
+    if (kind == NamedSurfaceFunction::Argument::condition) return source(std::move(part), at);
+    if (kind == NamedSurfaceFunction::Argument::either && part.is_condition()) return part;
+    return numeric(std::move(part), at);
   }
 
   // A layer in place of a condition is true where the layer has a value.

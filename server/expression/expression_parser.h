@@ -39,6 +39,8 @@ enum class Names { layers, columns };
 //   of (number, width), interpolated and interpolation_error of (number, range), watershed(number,
 //   height), run_off(number): likewise
 //   hysteresis(number, low, high): likewise, a condition
+//   sieve and fill_holes of (number or condition, area), majority(number or condition, radius),
+//   opening and closing of (condition, width): likewise; a condition if the argument is one
 //
 // Words are case-insensitive. Layers and columns are named by their slugs. `layer.column` is a
 // column of the record whose key the layer holds. `column.column` is a column of the record that a

@@ -18,28 +18,57 @@ constexpr std::size_t kMaxSurfaceFunctions = 8;  // in one formula
 struct NamedSurfaceFunction {
   Expression::Op op;
   std::string_view name;
+  // The first argument. The result of a clean-up is a condition if the argument is one.
+  enum class Argument { number, condition, either } argument = Argument::number;
   // The second argument: whether it exists, its name, and whose unit it has.
   enum class Limit { none, optional, needed } limit = Limit::needed;
   std::string_view limit_name = "distance", limit_unit = "model";
 };
 inline constexpr std::array kSurfaceFunctions{
-    NamedSurfaceFunction{Expression::Op::distance, "distance",
-                         NamedSurfaceFunction::Limit::optional},
-    NamedSurfaceFunction{Expression::Op::nearest, "nearest", NamedSurfaceFunction::Limit::optional},
-    NamedSurfaceFunction{Expression::Op::focal_mean, "focal_mean"},
-    NamedSurfaceFunction{Expression::Op::focal_min, "focal_min"},
-    NamedSurfaceFunction{Expression::Op::focal_max, "focal_max"},
-    NamedSurfaceFunction{Expression::Op::focal_variety, "focal_variety"},
-    NamedSurfaceFunction{Expression::Op::hot_spot, "hot_spot"},
-    NamedSurfaceFunction{Expression::Op::valley, "valley", NamedSurfaceFunction::Limit::needed,
-                         "width"},
-    NamedSurfaceFunction{Expression::Op::ridge, "ridge", NamedSurfaceFunction::Limit::needed,
-                         "width"},
-    NamedSurfaceFunction{Expression::Op::watershed, "watershed",
-                         NamedSurfaceFunction::Limit::needed, "height", "layer"},
-    NamedSurfaceFunction{Expression::Op::run_off, "run_off", NamedSurfaceFunction::Limit::none},
-    NamedSurfaceFunction{Expression::Op::interpolated, "interpolated"},
-    NamedSurfaceFunction{Expression::Op::interpolation_error, "interpolation_error"}};
+    NamedSurfaceFunction{.op = Expression::Op::distance,
+                         .name = "distance",
+                         .argument = NamedSurfaceFunction::Argument::condition,
+                         .limit = NamedSurfaceFunction::Limit::optional},
+    NamedSurfaceFunction{.op = Expression::Op::nearest,
+                         .name = "nearest",
+                         .limit = NamedSurfaceFunction::Limit::optional},
+    NamedSurfaceFunction{.op = Expression::Op::focal_mean, .name = "focal_mean"},
+    NamedSurfaceFunction{.op = Expression::Op::focal_min, .name = "focal_min"},
+    NamedSurfaceFunction{.op = Expression::Op::focal_max, .name = "focal_max"},
+    NamedSurfaceFunction{.op = Expression::Op::focal_variety, .name = "focal_variety"},
+    NamedSurfaceFunction{.op = Expression::Op::hot_spot, .name = "hot_spot"},
+    NamedSurfaceFunction{.op = Expression::Op::valley, .name = "valley", .limit_name = "width"},
+    NamedSurfaceFunction{.op = Expression::Op::ridge, .name = "ridge", .limit_name = "width"},
+    NamedSurfaceFunction{.op = Expression::Op::watershed,
+                         .name = "watershed",
+                         .limit_name = "height",
+                         .limit_unit = "layer"},
+    NamedSurfaceFunction{.op = Expression::Op::run_off,
+                         .name = "run_off",
+                         .limit = NamedSurfaceFunction::Limit::none},
+    NamedSurfaceFunction{.op = Expression::Op::sieve,
+                         .name = "sieve",
+                         .argument = NamedSurfaceFunction::Argument::either,
+                         .limit_name = "area",
+                         .limit_unit = "model, squared"},
+    NamedSurfaceFunction{.op = Expression::Op::fill_holes,
+                         .name = "fill_holes",
+                         .argument = NamedSurfaceFunction::Argument::either,
+                         .limit_name = "area",
+                         .limit_unit = "model, squared"},
+    NamedSurfaceFunction{.op = Expression::Op::majority,
+                         .name = "majority",
+                         .argument = NamedSurfaceFunction::Argument::either},
+    NamedSurfaceFunction{.op = Expression::Op::opening,
+                         .name = "opening",
+                         .argument = NamedSurfaceFunction::Argument::condition,
+                         .limit_name = "width"},
+    NamedSurfaceFunction{.op = Expression::Op::closing,
+                         .name = "closing",
+                         .argument = NamedSurfaceFunction::Argument::condition,
+                         .limit_name = "width"},
+    NamedSurfaceFunction{.op = Expression::Op::interpolated, .name = "interpolated"},
+    NamedSurfaceFunction{.op = Expression::Op::interpolation_error, .name = "interpolation_error"}};
 
 // The slugs of the layers that take the place of functions begin with this text.
 inline constexpr std::string_view kSurfaceFunctionPrefix = "surface.function.";

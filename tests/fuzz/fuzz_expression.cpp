@@ -50,6 +50,11 @@ std::string hysteresis(const Expression& function) {
   return text + ")";
 }
 
+bool is_condition_in_text(const Expression& function) {
+  return function.op == Op::hysteresis || (function.op >= Op::sieve && function.op <= Op::closing &&
+                                           function.parts.at(0).is_condition());
+}
+
 std::string joined(const char* word, const Expression& expression) {
   // `a in (1)` has the same text as `a = 1`.
   if (expression.parts.size() == 1) return text_of(expression.parts[0]);
@@ -96,6 +101,11 @@ std::string text_of(const Expression& expression) {
     case Op::valley: return with_limit("valley", expression);
     case Op::ridge: return with_limit("ridge", expression);
     case Op::hysteresis: return hysteresis(expression);
+    case Op::sieve: return with_limit("sieve", expression);
+    case Op::fill_holes: return with_limit("fill_holes", expression);
+    case Op::majority: return with_limit("majority", expression);
+    case Op::opening: return with_limit("opening", expression);
+    case Op::closing: return with_limit("closing", expression);
     case Op::interpolated: return with_limit("interpolated", expression);
     case Op::interpolation_error: return with_limit("interpolation_error", expression);
     case Op::add: return joined("+", expression);
@@ -131,7 +141,7 @@ std::string text_of(const Expression& expression) {
     case Op::valid: return "valid(" + named(expression) + ")";
     case Op::known:
       // The function alone is a condition in the text.
-      if (expression.parts.at(0).op == Op::hysteresis) return part();
+      if (is_condition_in_text(expression.parts.at(0))) return part();
       return "(" + part() + " is not null)";
     case Op::holds: return "(" + part() + " = true)";
     case Op::less: return joined("<", expression);

@@ -1,7 +1,6 @@
 #include "app/layers/cleanup.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <span>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "app/authorization/visibility_leak_check.h"
 #include "app/edits.h"
+#include "app/layers/reserved_regions.h"
 #include "app/records/painted_keys.h"
 #include "mesh/parallel.h"
 #include "query/regions/border_line.h"
@@ -28,8 +28,6 @@ namespace {
 // The largest memory of an operation per texel of the map: the values before and after, and the
 // work of a majority, or distances along the surface.
 constexpr std::uint64_t kBytesPerTexel = 40;
-// Distances along the surface also need about 1 KiB for each texel within two steps of a seam.
-constexpr std::uint64_t kBytesPerLinkedTexel = 3 * 1024;
 
 constexpr const char* kResult = "result";  // member of the record of an edit
 
@@ -39,26 +37,10 @@ tl::unexpected<Error> key_used() {
               "Idempotency-Key");
 }
 
-// Finds the regions for an operation, and reserves the memory that it needs for them.
-struct ReservedRegions {
-  query::Regions regions;
-  MemoryLedger::Share memory;
-};
-Result<ReservedRegions> regions_of(const Services& services, const query::SurfaceValues& values,
-                                   const RegionSource& source, Progress& progress) {
-  progress.report(0, "Finding regions");
-  auto regions = STRATA_TRY(query::find_regions(values, *source.map, *source.graph, progress));
-  const std::size_t count = regions.list.size();
-  auto memory = STRATA_TRY(services.rooms.memory().reserve(
-      count * query::kBytesPerRegion,
-      std::to_string(count) + " regions of a layer (smoothing by majority first reduces them)"));
-  return ReservedRegions{std::move(regions), std::move(memory)};
-}
-
 Result<query::CleanedValues> painted_border(const Services& services, const RegionSource& target,
                                             const RegionSource& source, const Cleanup& cleanup,
                                             Progress& progress) {
-  const auto memory = STRATA_TRY(reserve_distances(services, target));
+  const auto memory = STRATA_TRY(reserve_distances(services, *target.graph));
   const query::BorderLine line{cleanup.of_bits, cleanup.width_m / target.metres_per_unit,
                                cleanup.inside};
   const auto selection = STRATA_TRY(query::select_border_line(
@@ -88,7 +70,7 @@ Result<std::uint32_t> value_of_regions(const query::SurfaceValues& values, const
 
 Result<query::CleanedValues> opened_or_closed(const Services& services, const RegionSource& target,
                                               const Cleanup& cleanup, Progress& progress) {
-  const auto memory = STRATA_TRY(reserve_distances(services, target));
+  const auto memory = STRATA_TRY(reserve_distances(services, *target.graph));
   auto values = target.values();
   const std::uint32_t of = STRATA_TRY(value_of_regions(values, cleanup));
   const double radius = cleanup.width_m / 2 / target.metres_per_unit;
@@ -106,14 +88,16 @@ Result<query::CleanedValues> cleaned_values(const Services& services, room::Room
   switch (cleanup.operation) {
     case Cleanup::Operation::sieve: {
       auto values = target.values();
-      const auto found = STRATA_TRY(regions_of(services, values, target, progress));
+      const auto found =
+          STRATA_TRY(find_reserved_regions(services, values, *target.map, *target.graph, progress));
       progress.begin_stage(0.4, 0.9);
       return query::sieve(std::move(values), found.regions, area, cleanup.to, *target.map,
                           *target.graph, progress);
     }
     case Cleanup::Operation::fill_holes: {
       auto values = target.values();
-      const auto found = STRATA_TRY(regions_of(services, values, target, progress));
+      const auto found =
+          STRATA_TRY(find_reserved_regions(services, values, *target.map, *target.graph, progress));
       progress.begin_stage(0.4, 0.9);
       return query::fill_holes(std::move(values), found.regions, area, *target.map, *target.graph,
                                progress);
@@ -178,15 +162,6 @@ Result<RegionSource> region_source(const Services& services, room::Room& room, L
   auto snapshot = STRATA_TRY(room.queries().tiles(to_string(layer.id), {}));
   return RegionSource{std::move(layer), std::move(snapshot.tiles), std::move(map),
                       std::move(graph), room.model().metres(),     std::move(memory)};
-}
-
-Result<MemoryLedger::Share> reserve_distances(const Services& services,
-                                              const RegionSource& source) {
-  std::uint64_t linked = 0;
-  for (const std::uint64_t bits : source.graph->has_links)
-    linked += static_cast<std::uint64_t>(std::popcount(bits));
-  return services.rooms.memory().reserve(linked * kBytesPerLinkedTexel,
-                                         "distances on the surface of a layer");
 }
 
 Result<void> check_can_show(const Layer& painted, const Layer& source, const std::string& field) {

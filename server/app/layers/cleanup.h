@@ -84,9 +84,6 @@ struct RegionSource {
 };
 Result<RegionSource> region_source(const Services& services, room::Room& room, LayerId layer);
 
-// Reserves the memory for distances along the surface near its seams.
-Result<MemoryLedger::Share> reserve_distances(const Services& services, const RegionSource& source);
-
 // Checks that regions of `source` can be shown on the painted layer: the layers have the same
 // resolution, and users who see the painted layer may also see the source. The error names `field`.
 Result<void> check_can_show(const Layer& painted, const Layer& source, const std::string& field);

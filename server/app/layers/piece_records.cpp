@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/change_notifier.h"
+#include "app/layers/reserved_regions.h"
 #include "app/records/painted_keys.h"
 #include "core/log.h"
 #include "mesh/parallel.h"
@@ -54,7 +55,7 @@ Result<void> measure_as_lines(const Services& services, room::Room& room,
   for (const query::Piece& piece : found.pieces.list) centers.push_back(piece.center);
   const auto order = query::reading_order(centers, up_frame(room.model().up));
   STRATA_TRY(query::reorder(found.pieces, order, progress));
-  const auto memory = STRATA_TRY(reserve_distances(services, source));
+  const auto memory = STRATA_TRY(reserve_distances(services, *source.graph));
   progress.begin_stage(0.4, 0.8);
   found.lines = STRATA_TRY(query::measure_lines(found.pieces, *source.map, *source.graph, progress,
                                                 mesh::background_threads()));

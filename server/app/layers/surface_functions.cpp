@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "app/layers/reserved_regions.h"
 #include "domain/scene/model.h"
 #include "domain/scene/up.h"
 #include "mesh/parallel.h"
@@ -17,7 +18,10 @@
 #include "query/regions/focal.h"
 #include "query/regions/hysteresis.h"
 #include "query/regions/line_depth.h"
+#include "query/regions/majority.h"
+#include "query/regions/open_close.h"
 #include "query/regions/run_off.h"
+#include "query/regions/sieve.h"
 #include "query/regions/watershed.h"
 #include "room/layers.h"
 #include "room/pipeline/expression_binding.h"
@@ -30,8 +34,6 @@ namespace {
 
 // Bytes per texel of the map while one function is computed, and of the values of each function.
 constexpr std::uint64_t kWorkBytesPerTexel = 48, kValueBytesPerTexel = 5;
-// The triangles across seams, for the texels within two steps of a link.
-constexpr std::uint64_t kSeamBytesPerTexel = 2048;
 
 // The part of a job in which a function is computed.
 struct Stage {
@@ -64,12 +66,11 @@ class SurfaceFunctionValues {
     query::LayerView result;
     result.layer.slug = requested.slug;
     result.layer.resolution = layer_.resolution;
-    result.layer.type =
-        requested.function.op == Op::nearest ? type_of(argument, views) : ValueType::f32;
-    auto values =
-        STRATA_TRY(argument.is_condition() ? distances(bound, requested.function, progress)
-                                           : of_numbers(bound, requested.function,
-                                                        type_of(argument, views), progress, stage));
+    result.layer.type = keeps_type(requested.function) ? type_of(argument, views) : ValueType::f32;
+    auto values = STRATA_TRY(
+        argument.is_condition()
+            ? of_condition(bound, requested.function, progress, stage)
+            : of_numbers(bound, requested.function, type_of(argument, views), progress, stage));
     auto content =
         STRATA_TRY(query::make_patch({}, result.layer.type, *map_, std::move(values), progress));
     for (auto& [address, tile] : content.tiles)
@@ -80,13 +81,62 @@ class SurfaceFunctionValues {
  private:
   using Op = Expression::Op;
   static constexpr const char* kField = "expression";
+  static constexpr std::uint32_t kTrue = std::bit_cast<std::uint32_t>(1.0f);
 
-  Result<query::SurfaceValues> distances(const room::BoundForLayer& condition,
-                                         const Expression& function, Progress& progress) const {
-    const auto sources = STRATA_TRY(query::select_where(
-        condition.expression, condition.layers, *map_, kField, mesh::background_threads(), frame_));
-    return query::distance_values(sources, function.number, *map_, *graph_, progress,
-                                  mesh::background_threads());
+  static bool is_cleanup(Op op) { return op >= Op::sieve && op <= Op::closing; }
+
+  // A layer keeps its type if the function chooses between its values, because f32 does not hold
+  // all keys.
+  static bool keeps_type(const Expression& function) {
+    return function.op == Op::nearest || is_cleanup(function.op);
+  }
+
+  Result<query::SurfaceValues> of_condition(const room::BoundForLayer& condition,
+                                            const Expression& function, Progress& progress,
+                                            Stage stage) const {
+    auto selected = STRATA_TRY(query::select_where(condition.expression, condition.layers, *map_,
+                                                   kField, mesh::background_threads(), frame_));
+    if (function.op == Op::distance)
+      return query::distance_values(selected, function.number, *map_, *graph_, progress,
+                                    mesh::background_threads());
+    query::SurfaceValues values{std::vector<std::uint32_t>(selected.size() * 64), {}};
+    for (std::uint32_t texel = 0; texel < values.bits.size(); ++texel)
+      if ((selected[texel / 64] >> texel % 64 & 1u) != 0) values.bits[texel] = kTrue;
+    values.valid = std::move(selected);
+    return cleaned(std::move(values), function, progress, stage);
+  }
+
+  Result<query::SurfaceValues> cleaned(query::SurfaceValues values, const Expression& function,
+                                       Progress& progress, Stage stage) const {
+    auto result = clean(std::move(values), function, progress, stage);
+    if (!result && !result.error().field.empty()) result.error().field = kField;
+    return result;
+  }
+
+  Result<query::SurfaceValues> clean(query::SurfaceValues values, const Expression& function,
+                                     Progress& progress, Stage stage) const {
+    const int threads = mesh::background_threads();
+    if (function.op == Op::opening)
+      return query::open_value(std::move(values), kTrue, function.number / 2, *map_, *graph_,
+                               progress, threads);
+    if (function.op == Op::closing)
+      return query::close_value(std::move(values), kTrue, function.number / 2, *map_, *graph_,
+                                progress, threads);
+    if (function.op == Op::majority)
+      return query::majority(std::move(values), {function.number, frame_.metres}, *map_, *graph_,
+                             progress, threads);
+    const double found = (stage.from + stage.to) / 2;
+    progress.begin_stage(stage.from, found);
+    const auto regions =
+        STRATA_TRY(find_reserved_regions(services_, values, *map_, *graph_, progress));
+    progress.begin_stage(found, stage.to);
+    auto changed =
+        STRATA_TRY(function.op == Op::fill_holes
+                       ? query::fill_holes(std::move(values), regions.regions, function.number,
+                                           *map_, *graph_, progress)
+                       : query::sieve(std::move(values), regions.regions, function.number,
+                                      query::SieveTo::longest_border, *map_, *graph_, progress));
+    return std::move(changed.values);
   }
 
   Result<query::SurfaceValues> of_numbers(const room::BoundForLayer& number,
@@ -95,7 +145,8 @@ class SurfaceFunctionValues {
     const int threads = mesh::background_threads();
     const auto tiles = STRATA_TRY(query::compute_tiles(number.expression, number.layers, *map_,
                                                        frame_, type, kField, threads));
-    const auto values = query::read_surface_values(tiles, type, *map_);
+    auto values = query::read_surface_values(tiles, type, *map_);
+    if (is_cleanup(function.op)) return cleaned(std::move(values), function, progress, stage);
     if (function.op == Op::nearest)
       return query::nearest_values(values, function.number, *map_, *graph_, progress, threads);
     if (function.op == Op::interpolated || function.op == Op::interpolation_error)
@@ -143,7 +194,6 @@ class SurfaceFunctionValues {
     }
   }
 
-  // A layer keeps its type, because f32 does not hold all keys.
   static ValueType type_of(const Expression& number, const std::vector<query::LayerView>& views) {
     if (number.op != Expression::Op::layer) return ValueType::f32;
     const auto found =
@@ -184,9 +234,6 @@ Result<MemoryLedger::Share> reserve_surface_functions(const Services& services, 
                                                       const query::SurfaceFormula& formula) {
   const auto map = STRATA_TRY(room.surface().map(layer.resolution));
   const auto graph = STRATA_TRY(room.surface().graph(layer.resolution));
-  std::uint64_t linked = 0;
-  for (const std::uint64_t texels : graph->has_links)
-    linked += static_cast<std::uint64_t>(std::popcount(texels));
   const bool interpolates = std::ranges::any_of(formula.functions, [](const auto& each) {
     const auto op = each.function.op;
     return op == Expression::Op::interpolated || op == Expression::Op::interpolation_error;
@@ -194,7 +241,8 @@ Result<MemoryLedger::Share> reserve_surface_functions(const Services& services, 
   return services.rooms.memory().reserve(
       map->block_of_slot.size() * 64 *
               (kWorkBytesPerTexel + formula.functions.size() * kValueBytesPerTexel) +
-          linked * kSeamBytesPerTexel + (interpolates ? query::kInterpolationBytes : 0),
+          graph->linked_texels() * kBytesPerLinkedTexel +
+          (interpolates ? query::kInterpolationBytes : 0),
       "functions along the surface");
 }
 

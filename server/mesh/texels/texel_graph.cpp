@@ -239,6 +239,12 @@ std::span<const TexelGraph::Link> TexelGraph::links_of(std::uint32_t texel) cons
   return {first, last};
 }
 
+std::size_t TexelGraph::linked_texels() const {
+  std::size_t count = 0;
+  for (const std::uint64_t bits : has_links) count += static_cast<std::size_t>(std::popcount(bits));
+  return count;
+}
+
 std::size_t TexelGraph::bytes() const {
   return (to_right.capacity() + to_upper.capacity() + has_links.capacity() +
           at_open_edge.capacity()) *

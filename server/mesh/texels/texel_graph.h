@@ -29,6 +29,7 @@ struct TexelGraph {
   std::vector<Link> links;  // ascending, each listed in both directions
 
   std::span<const Link> links_of(std::uint32_t texel) const;
+  std::size_t linked_texels() const;  // number of texels with a link
   std::size_t bytes() const;
 };
 

@@ -367,6 +367,41 @@ def test_lines(server):
     assert done["state"] == "failed" and "22 texels" in done["problem"]["detail"], done
 
 
+def test_cleanups(server):
+    """A speck of 2 mm, a wide area with a hole of 2 mm, and a line of 1 mm."""
+    speck = "(x between 10 and 12 and y between 10 and 12)"
+    hole = "(x between 70 and 72 and y between 40 and 42)"
+    line = "(x between 30 and 31)"
+    compute(
+        server, "Raw", f"case when {speck} or {line} then 1 when x > 50 and not {hole} then 2 end"
+    )
+    places = {"speck": (11, 11), "hole": (71, 41), "line": (30.5, 80), "area": (60, 60)}
+    raw = {"speck": 1, "hole": None, "line": 1, "area": 2}
+    for name, expression, changed in (
+        ("Sieved", "sieve(raw, 9)", {"speck": None}),
+        ("Filled", "fill_holes(raw, 9)", {"hole": 2}),
+        ("Both", "fill_holes(sieve(raw, 9), 9)", {"speck": None, "hole": 2}),
+        ("Smooth", "majority(raw, 1.5)", {"line": None}),
+    ):
+        compute_along(server, name, expression)
+        for place, right in (raw | changed).items():
+            read = value(server, name.lower(), *places[place])
+            assert (read["value"] if read["valid"] else None) == right, (expression, place, read)
+    for name, expression, inside in (
+        ("Large", "sieve(valid(raw), 9)", {"line", "area"}),
+        ("Closed", "closing(raw, 4)", {"speck", "hole", "line", "area"}),
+        ("Opened", "opening(raw = 1, 1.5)", {"speck"}),
+    ):
+        layer = compute_along(server, name, expression)
+        assert layer["type"] == "u8", layer
+        for place, at in places.items():
+            assert value(server, name.lower(), *at)["valid"] is (place in inside), (name, place)
+    job = compute(server, "Wide", "majority(raw, 50)", expect=202)
+    done = server.wait_for_job(job["id"])
+    assert done["state"] == "failed" and "40 texels" in done["problem"]["detail"], done
+    assert done["problem"]["field"] == "expression", done
+
+
 def test_interpolation(server):
     """Readings of a plane, 20 + x / 10, at 16 spots. Each spot of one value is one reading."""
     server.ok("POST", M + "/layers", {"name": "Moisture", "type": "f32", "resolution": 2048})

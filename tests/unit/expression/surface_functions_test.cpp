@@ -90,6 +90,36 @@ TEST(SurfaceFunctions, hysteresis_is_a_condition_with_two_thresholds) {
   EXPECT_EQ(formula->functions.size(), 3u);
 }
 
+TEST(SurfaceFunctions, that_clean_up_return_what_they_get) {
+  for (const auto& [name, op] :
+       {std::pair("sieve", Op::sieve), std::pair("fill_holes", Op::fill_holes),
+        std::pair("majority", Op::majority)}) {
+    const Expression classes = number(std::string(name) + "(wet, 4)");
+    EXPECT_EQ(classes.op, op);
+    EXPECT_EQ(classes.number, 4);
+    EXPECT_EQ(classes.parts[0], number("wet"));
+    EXPECT_TRUE(classes.is_surface_function());
+    const Expression places = condition(std::string(name) + "(wet > 1, 4)");
+    ASSERT_EQ(places.op, Op::known);
+    EXPECT_EQ(places.parts[0].op, op);
+    EXPECT_EQ(places.parts[0].parts[0], condition("wet > 1"));
+  }
+  for (const auto& [name, op] :
+       {std::pair("opening", Op::opening), std::pair("closing", Op::closing)}) {
+    const Expression places = condition(std::string(name) + "(wet, 4)");
+    ASSERT_EQ(places.op, Op::known);
+    EXPECT_EQ(places.parts[0].op, op);
+    EXPECT_EQ(places.parts[0].parts[0], condition("valid(wet)"));
+    EXPECT_TRUE(places.parts[0].is_surface_function());
+  }
+  const auto formula =
+      separate_surface_functions(condition("sieve(opening(wet > 1, 2), 9) and dry > 2"), "e");
+  ASSERT_TRUE(formula);
+  ASSERT_EQ(formula->functions.size(), 2u);
+  EXPECT_EQ(formula->functions[1].function.op, Op::sieve);
+  EXPECT_TRUE(formula->functions[1].function.parts[0].is_condition());
+}
+
 TEST(SurfaceFunctions, of_readings_have_a_number_and_a_range) {
   for (const auto& [name, op] : {std::pair("interpolated", Op::interpolated),
                                  std::pair("interpolation_error", Op::interpolation_error)}) {
@@ -155,6 +185,12 @@ TEST(SurfaceFunctions, are_refused_with_the_reason_and_the_place) {
            {"hysteresis(wet, dry, 1)", kSyntax, 16, 0, "as a number"},
            {"hysteresis(wet, 2, 1)", kSyntax, 20, 0, "lower than the first"},
            {"hysteresis(wet > 1, 1, 2)", kExpectsNumber, 11},
+           {"sieve(wet)", kSyntax, 9, 0, "an area"},
+           {"sieve(wet, 20 mm)", kUnit, 11, 5, "model, squared"},
+           {"fill_holes('a', 2)", kWrongType, 11},
+           {"majority(wet > 1, 2)", kExpectsNumber, 0},
+           {"opening(wet + 1, 2)", kExpectsCondition, 8},
+           {"closing(wet > 1)", kSyntax, 15, 0, "a width"},
            {"interpolated(wet)", kSyntax, 16, 0, "a distance"},
            {"interpolated(wet > 1, 80)", kExpectsNumber, 13},
            {"interpolation_error(wet, 80 mm)", kUnit, 25, 5, "unit of the model"},

@@ -814,6 +814,7 @@ export const texts = {
     computed_detail: (name) =>
       `Die Werte von „${name}“ wurden berechnet. Das kuratorische Team kann die Ebene zur Bearbeitung entsperren.`,
     by_hand: "Von Hand bearbeitet: Werte können von den berechneten abweichen.",
+    in_analysis: (step, of, name) => `Schritt ${step} von ${of} der Analyse „${name}“.`,
     by_hand_formula: "Die Ebene wird nicht automatisch aktualisiert.",
     overwrite_title: (name) => `„${name}“ aktualisieren?`,
     overwrite_lead: "Dies überschreibt Bearbeitungen von Hand und sperrt die Ebene wieder.",

@@ -777,6 +777,8 @@ export const texts = {
     computed_detail: (name: string) =>
       `The values of ${name} were computed. A curator can unlock it for editing.`,
     by_hand: "Edited by hand: values may differ from the computed ones.",
+    in_analysis: (step: number, of: number, name: string) =>
+      `Step ${step} of ${of} of the analysis “${name}”.`,
     by_hand_formula: "It does not update automatically.",
     overwrite_title: (name: string) => `Update “${name}”?`,
     overwrite_lead: "This overwrites edits made by hand and locks the layer again.",

@@ -805,6 +805,7 @@ export const texts = {
     computed_detail: (name) =>
       `Los valores de «${name}» son calculados. Un curador puede desbloquearla para editarla.`,
     by_hand: "Editada a mano: sus valores pueden diferir de los calculados.",
+    in_analysis: (step, of, name) => `Paso ${step} de ${of} del análisis «${name}».`,
     by_hand_formula: "No se actualiza automáticamente.",
     overwrite_title: (name) => `¿Actualizar «${name}»?`,
     overwrite_lead: "Se sobrescribe lo editado a mano y la capa se bloquea de nuevo.",

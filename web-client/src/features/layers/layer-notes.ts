@@ -3,6 +3,7 @@
 
 import { html, nothing, type TemplateResult } from "lit";
 import { isAsComputed, type Layer } from "../../core/types";
+import type { LayerAnalysis } from "../../core/protocol.gen";
 import { unlockLabel } from "../../session/layer-lock";
 import type { ModelSession } from "../../session/model-session";
 import { icon } from "../../ui/icons";
@@ -20,7 +21,7 @@ export function layerNotes(
   unlock: () => void,
 ): TemplateResult {
   return html`${layer.locked ? lockNote(session, layer, unlock) : nothing} ${layer.edited_by_hand === true ? handNote(layer) : nothing}
-  ${layer.review ? reviewNote(session, layer) : nothing}`;
+  ${layer.review ? reviewNote(session, layer) : nothing} ${layer.analysis ? analysisNote(layer.analysis) : nothing}`;
 }
 
 const lockNote = (session: ModelSession, layer: Layer, unlock: () => void): TemplateResult =>
@@ -33,6 +34,9 @@ const handNote = (layer: Layer): TemplateResult =>
   html`<p class="locked by-hand">
     ${icon("edit")}<span>${layer.expression === undefined ? texts.layers.by_hand : `${texts.layers.by_hand} ${texts.layers.by_hand_formula}`}</span>
   </p>`;
+
+const analysisNote = ({ name, step, of }: LayerAnalysis): TemplateResult =>
+  html`<p class="locked">${icon("chart")}<span>${texts.layers.in_analysis(step, of, name)}</span></p>`;
 
 function reviewNote({ canCurate, reviews }: ModelSession, layer: Layer): TemplateResult {
   const waiting = reviews.waitingOn(layer);
