@@ -11,8 +11,10 @@
 #include "mesh/analysis/model_change.h"
 #include "mesh/analysis/model_distance.h"
 #include "mesh/analysis/openness.h"
+#include "mesh/analysis/rain_sectors.h"
 #include "mesh/analysis/sampled_field.h"
-#include "mesh/analysis/sun_exposure.h"
+#include "mesh/analysis/sky_exposure.h"
+#include "mesh/analysis/sun_sectors.h"
 #include "mesh/io/vertex_properties.h"
 #include "mesh/surface/boundary.h"
 #include "mesh/texels/texel_owners.h"
@@ -79,6 +81,7 @@ class Measure {
       case ShapeKind::significant_change: return change();
       case ShapeKind::sun_hours:
       case ShapeKind::sun_energy: return sun();
+      case ShapeKind::driving_rain: return rain();
       case ShapeKind::vertex_property: return property();
     }
     return fail(ErrorCode::internal, "Unknown kind",
@@ -180,24 +183,34 @@ class Measure {
   }
 
   Result<SurfaceValue> sun() {
-    progress_.begin_stage(0, kPrepared);
     const auto [first, days] = days_of(recipe_);
-    auto sectors = mesh::sun_sectors(*recipe_.latitude_deg, {first, days});
+    return exposed(mesh::sun_sectors(*recipe_.latitude_deg, {first, days}),
+                   recipe_.kind == ShapeKind::sun_hours ? &mesh::SkyExposure::Sum::hours
+                                                        : &mesh::SkyExposure::Sum::amount);
+  }
+
+  Result<SurfaceValue> rain() {
+    return exposed(mesh::rain_sectors({recipe_.wind_shares, *recipe_.wind_speed_m_s,
+                                       *recipe_.rain_mm, *recipe_.rain_mm_per_hour}),
+                   &mesh::SkyExposure::Sum::amount);
+  }
+
+  // The directions of the sectors are east, north and up.
+  Result<SurfaceValue> exposed(std::vector<mesh::SkySector> sectors,
+                               double mesh::SkyExposure::Sum::*part) {
+    progress_.begin_stage(0, kPrepared);
     const UpFrame frame = up_frame(model_.up);
     const double turned = glm::radians(*recipe_.north_deg);
     const glm::dvec3 north = std::cos(turned) * frame.into + std::sin(turned) * frame.right,
                      east = std::cos(turned) * frame.right - std::sin(turned) * frame.into;
-    for (mesh::SunSector& sector : sectors) {
+    for (mesh::SkySector& sector : sectors) {
       const glm::dvec3 way = sector.direction;
       sector.direction = way.x * east + way.y * north + way.z * frame.up;
     }
-    const auto light =
-        STRATA_TRY(mesh::SunExposure::make(geometry_, std::move(sectors), progress_));
+    const auto sky = STRATA_TRY(mesh::SkyExposure::make(geometry_, std::move(sectors), progress_));
     progress_.begin_stage(kPrepared, kMeasured);
-    const bool is_energy = recipe_.kind == ShapeKind::sun_energy;
     return sampled(even_spacing(5e5), [&](const glm::vec3& p, const glm::vec3& n) {
-      const auto sum = light->at(p, n);
-      return static_cast<float>(is_energy ? sum.energy : sum.hours);
+      return static_cast<float>(sky->at(p, n).*part);
     });
   }
 

@@ -1,5 +1,6 @@
 #include "jobs/shape_recipe.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -11,7 +12,7 @@
 namespace strata::jobs {
 namespace {
 
-constexpr std::array<std::string_view, 17> kNames{"height",
+constexpr std::array<std::string_view, 18> kNames{"height",
                                                   "slope",
                                                   "azimuth",
                                                   "mean_curvature",
@@ -27,6 +28,7 @@ constexpr std::array<std::string_view, 17> kNames{"height",
                                                   "significant_change",
                                                   "sun_hours",
                                                   "sun_energy",
+                                                  "driving_rain",
                                                   "vertex_property"};
 
 constexpr double kEdgesPerRadius = 4;
@@ -34,6 +36,7 @@ constexpr double kEdgesPerRadius = 4;
 constexpr double kEdgesPerProjection = 8;
 constexpr double kProjectionsPerNormal = 2;
 constexpr double kUsualProjectionsPerDistance = 50, kMaxProjectionsPerDistance = 200;
+constexpr double kDefaultRainPerHour = 1;  // mm
 constexpr int kDefaultRays = 64;
 constexpr int kMinRays = 16, kMaxRays = 1024;
 
@@ -44,6 +47,7 @@ bool takes_distance(ShapeKind kind) {
   return kind == ShapeKind::ambient_occlusion || kind == ShapeKind::model_distance ||
          is_change(kind);
 }
+bool takes_north(ShapeKind kind) { return is_sun(kind) || kind == ShapeKind::driving_rain; }
 bool takes_model(ShapeKind kind) { return kind == ShapeKind::model_distance || is_change(kind); }
 
 double millimetres(double units, const Model& model) { return units * model.metres() * 1000; }
@@ -79,20 +83,25 @@ Result<void> check_members(const ShapeRecipe& r) {
   const struct {
     bool is_set, takes;
     const char* member;
-  } members[] = {{r.radius_mm.has_value(), takes_radius(kind), "radius_mm"},
-                 {r.distance_mm.has_value(), takes_distance(kind), "distance_mm"},
-                 {r.normal_scale_mm.has_value(), is_change(kind), "normal_scale_mm"},
-                 {r.projection_scale_mm.has_value(), is_change(kind), "projection_scale_mm"},
-                 {r.registration_mm.has_value(), is_change(kind), "registration_mm"},
-                 {r.latitude_deg.has_value(), is_sun(kind), "latitude_deg"},
-                 {r.north_deg.has_value(), is_sun(kind), "north_deg"},
-                 {!r.from.empty(), is_sun(kind), "from"},
-                 {!r.to.empty(), is_sun(kind), "to"},
-                 {r.rays.has_value(), kind == ShapeKind::ambient_occlusion, "rays"},
-                 {r.absolute, kind == ShapeKind::height, "absolute"},
-                 {!r.model.empty(), takes_model(kind), "model"},
-                 {!r.property.empty(), kind == ShapeKind::vertex_property, "property"},
-                 {!r.source.empty(), kind == ShapeKind::vertex_property, "source"}};
+  } members[] = {
+      {r.radius_mm.has_value(), takes_radius(kind), "radius_mm"},
+      {r.distance_mm.has_value(), takes_distance(kind), "distance_mm"},
+      {r.normal_scale_mm.has_value(), is_change(kind), "normal_scale_mm"},
+      {r.projection_scale_mm.has_value(), is_change(kind), "projection_scale_mm"},
+      {r.registration_mm.has_value(), is_change(kind), "registration_mm"},
+      {r.latitude_deg.has_value(), is_sun(kind), "latitude_deg"},
+      {r.north_deg.has_value(), takes_north(kind), "north_deg"},
+      {!r.from.empty(), is_sun(kind), "from"},
+      {!r.to.empty(), is_sun(kind), "to"},
+      {!r.wind_shares.empty(), kind == ShapeKind::driving_rain, "wind_shares"},
+      {r.wind_speed_m_s.has_value(), kind == ShapeKind::driving_rain, "wind_speed_m_s"},
+      {r.rain_mm.has_value(), kind == ShapeKind::driving_rain, "rain_mm"},
+      {r.rain_mm_per_hour.has_value(), kind == ShapeKind::driving_rain, "rain_mm_per_hour"},
+      {r.rays.has_value(), kind == ShapeKind::ambient_occlusion, "rays"},
+      {r.absolute, kind == ShapeKind::height, "absolute"},
+      {!r.model.empty(), takes_model(kind), "model"},
+      {!r.property.empty(), kind == ShapeKind::vertex_property, "property"},
+      {!r.source.empty(), kind == ShapeKind::vertex_property, "source"}};
   for (const auto& [is_set, takes, member] : members)
     STRATA_TRY(refuse_foreign(is_set, takes, member, kind));
   if (takes_model(kind) && r.model.empty())
@@ -122,14 +131,7 @@ std::optional<int> day_of_year(const std::string& text) {
   return before + day - 1;
 }
 
-Result<void> complete_sun(ShapeRecipe& recipe, const Model& model) {
-  if (!recipe.latitude_deg)
-    return fail(ErrorCode::invalid, "Latitude missing",
-                "Enter the latitude of the site in degrees, positive in the north.",
-                "compute.latitude_deg");
-  if (!(std::abs(*recipe.latitude_deg) <= 90))
-    return fail(ErrorCode::invalid, "Out of range", "The latitude must be from -90 to 90 degrees.",
-                "compute.latitude_deg");
+Result<void> complete_north(ShapeRecipe& recipe, const Model& model) {
   if (const Compass compass(model); !recipe.north_deg && compass.is_known)
     recipe.north_deg = compass.turned_degrees;
   if (!recipe.north_deg)
@@ -140,6 +142,18 @@ Result<void> complete_sun(ShapeRecipe& recipe, const Model& model) {
   if (!(std::abs(*recipe.north_deg) <= 360))
     return fail(ErrorCode::invalid, "Out of range",
                 "The direction of north must be from -360 to 360 degrees.", "compute.north_deg");
+  return {};
+}
+
+Result<void> complete_sun(ShapeRecipe& recipe, const Model& model) {
+  if (!recipe.latitude_deg)
+    return fail(ErrorCode::invalid, "Latitude missing",
+                "Enter the latitude of the site in degrees, positive in the north.",
+                "compute.latitude_deg");
+  if (!(std::abs(*recipe.latitude_deg) <= 90))
+    return fail(ErrorCode::invalid, "Out of range", "The latitude must be from -90 to 90 degrees.",
+                "compute.latitude_deg");
+  STRATA_TRY(complete_north(recipe, model));
   if (recipe.from.empty()) recipe.from = "01-01";
   if (recipe.to.empty()) recipe.to = "12-31";
   for (const auto& [day, member] : {std::pair(&recipe.from, "from"), std::pair(&recipe.to, "to")})
@@ -149,6 +163,33 @@ Result<void> complete_sun(ShapeRecipe& recipe, const Model& model) {
                   "possible, because the year has 365 days.",
                   "compute." + std::string(member));
   return {};
+}
+
+Result<void> complete_rain(ShapeRecipe& recipe, const Model& model) {
+  const auto& shares = recipe.wind_shares;
+  if ((shares.size() != 8 && shares.size() != 16) ||
+      !std::ranges::all_of(shares, [](double share) { return share >= 0 && share <= 1e6; }) ||
+      std::ranges::all_of(shares, [](double share) { return share == 0; }))
+    return fail(ErrorCode::invalid, "Wind rose missing",
+                "Enter how much of the rain falls with wind from each of 8 or 16 directions, "
+                "clockwise from north. No number can be negative, and one must be larger than 0.",
+                "compute.wind_shares");
+  if (!recipe.rain_mm_per_hour) recipe.rain_mm_per_hour = kDefaultRainPerHour;
+  const struct {
+    const std::optional<double>& value;
+    double least, most;
+    const char *member, *detail;
+  } numbers[] = {
+      {recipe.wind_speed_m_s, 0, 100, "wind_speed_m_s",
+       "Enter the mean speed of the wind while it rains, from 0 to 100 m/s."},
+      {recipe.rain_mm, 0.1, 1e5, "rain_mm", "Enter the rain of a year, from 0.1 to 100000 mm."},
+      {recipe.rain_mm_per_hour, 0.01, 1000, "rain_mm_per_hour",
+       "The mean intensity of the rain must be from 0.01 to 1000 mm per hour."}};
+  for (const auto& [value, least, most, member, detail] : numbers)
+    if (!value || !(*value >= least && *value <= most))
+      return fail(ErrorCode::invalid, value ? "Out of range" : "Value missing", detail,
+                  "compute." + std::string(member));
+  return complete_north(recipe, model);
 }
 
 double least_radius_mm(const Model& model) {
@@ -238,6 +279,16 @@ Palette sunshine(double most) {
                  {255, 240, 170, 255}});
 }
 
+// From dry stone to wet blue.
+Palette rainfall(double most) {
+  return linear(0, most,
+                {{246, 239, 220, 255},
+                 {186, 215, 206, 255},
+                 {104, 170, 200, 255},
+                 {46, 105, 173, 255},
+                 {24, 42, 105, 255}});
+}
+
 Palette compass() {
   Palette palette{PaletteMode::linear, 0, 360, {}, {}};
   palette.points = {{0, {44, 90, 160, 255}, "north"},
@@ -262,6 +313,18 @@ std::string period_of(const ShapeRecipe& r) {
          short_number(r.latitude_deg.value_or(0)) + "°, with north at " +
          short_number(r.north_deg.value_or(0)) +
          "°. With the shadows of the model itself. Without clouds, diffuse light and other objects.";
+}
+
+std::string climate_of(const ShapeRecipe& r) {
+  std::string shares;
+  for (const double share : r.wind_shares)
+    shares += (shares.empty() ? "" : " ") + short_number(share);
+  return " for " + short_number(r.rain_mm.value_or(0)) + " mm of rain of " +
+         short_number(r.rain_mm_per_hour.value_or(0)) + " mm per hour, with wind of " +
+         short_number(r.wind_speed_m_s.value_or(0)) + " m/s and shares of " + shares +
+         " for its directions clockwise from north, with north at " +
+         short_number(r.north_deg.value_or(0)) +
+         "°. Free-field formula of ISO 15927-3, with the shelter of the model itself. Without the flow of the wind around the object, splashes and other objects.";
 }
 
 std::string sentence(const ShapeRecipe& r, const Model& model, const std::string& other) {
@@ -311,6 +374,7 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
              scales_of(r);
     case ShapeKind::sun_hours: return "Hours of direct sun" + period_of(r);
     case ShapeKind::sun_energy: return "Energy of the direct sun under a clear sky" + period_of(r);
+    case ShapeKind::driving_rain: return "Rain on the surface" + climate_of(r);
     case ShapeKind::vertex_property:
       return "Property " + r.property + " of the scan's vertices, from " + r.source + ".";
   }
@@ -352,6 +416,10 @@ Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model, const Mode
     STRATA_TRY(complete_sun(recipe, model));
     return recipe;
   }
+  if (recipe.kind == ShapeKind::driving_rain) {
+    STRATA_TRY(complete_rain(recipe, model));
+    return recipe;
+  }
   const double diagonal = diagonal_mm(model), least = least_radius_mm(model);
   if (takes_radius(recipe.kind)) {
     if (!recipe.radius_mm)
@@ -390,6 +458,10 @@ nlohmann::json to_json(const ShapeRecipe& r) {
   if (r.north_deg) json["north_deg"] = *r.north_deg;
   if (!r.from.empty()) json["from"] = r.from;
   if (!r.to.empty()) json["to"] = r.to;
+  if (!r.wind_shares.empty()) json["wind_shares"] = r.wind_shares;
+  if (r.wind_speed_m_s) json["wind_speed_m_s"] = *r.wind_speed_m_s;
+  if (r.rain_mm) json["rain_mm"] = *r.rain_mm;
+  if (r.rain_mm_per_hour) json["rain_mm_per_hour"] = *r.rain_mm_per_hour;
   if (r.rays) json["rays"] = *r.rays;
   if (r.absolute) json["absolute"] = true;
   if (!r.model.empty()) json["model"] = r.model;
@@ -411,6 +483,7 @@ std::string unit_of(const ShapeRecipe& recipe, const Model& model) {
     case ShapeKind::level_of_detection: return "mm";
     case ShapeKind::sun_hours: return "h";
     case ShapeKind::sun_energy: return "kWh/m²";
+    case ShapeKind::driving_rain: return "l/m²";
     case ShapeKind::significant_change:
     case ShapeKind::ambient_occlusion:
     case ShapeKind::vertex_property: return "";
@@ -444,6 +517,7 @@ Palette palette_of(ShapeKind kind, const ValueRange& range) {
       return linear(0, 1, {{16, 18, 27, 255}, {120, 122, 130, 255}, {255, 255, 255, 255}});
     case ShapeKind::sun_hours:
     case ShapeKind::sun_energy: return sunshine(range.most);
+    case ShapeKind::driving_rain: return rainfall(range.most);
     case ShapeKind::vertex_property: return viridis(range.low, range.high);
     case ShapeKind::boundary_distance: return viridis(0, rounded(range.most));
     case ShapeKind::height: break;

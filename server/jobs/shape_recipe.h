@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "domain/layers/palette.h"
@@ -28,6 +29,7 @@ enum class ShapeKind {
   significant_change,  // 0: within the level of detection, 1: gain, 2: loss
   sun_hours,           // of direct sun in a period of the year
   sun_energy,          // of direct sun in a period of the year, in kWh/m²
+  driving_rain,        // in l/m²
   vertex_property
 };
 std::string_view name(ShapeKind kind);
@@ -49,11 +51,16 @@ struct ShapeRecipe {
   std::optional<int> rays;  // ambient occlusion: number of rays
   // Height: the world coordinate instead of the height above the lowest point.
   bool absolute = false;
-  // Sun: degrees to the north of the equator, and degrees clockwise from the model's north axis
-  // (domain/scene/compass.h) to true north, seen from above.
-  std::optional<double> latitude_deg, north_deg;
+  // Sun: degrees to the north of the equator.
+  std::optional<double> latitude_deg;
+  // Sun, rain: degrees clockwise from the model's north axis (domain/scene/compass.h) to true
+  // north, seen from above.
+  std::optional<double> north_deg;
   std::string from, to;  // sun: the first and last day, in the format MM-DD
-  std::string model;     // model distance, changes: id or slug of the other model
+  // Rain: the climate (mesh/analysis/rain_sectors.h). Empty: no shares.
+  std::vector<double> wind_shares;
+  std::optional<double> wind_speed_m_s, rain_mm, rain_mm_per_hour;
+  std::string model;  // model distance, changes: id or slug of the other model
   // Vertex property: its name and the source file. Empty: the only source file with this property.
   std::string property, source;
 };

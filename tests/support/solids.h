@@ -64,4 +64,12 @@ inline mesh::TriangleMesh box(const glm::dvec3& low, const glm::dvec3& high) {
   return mesh;
 }
 
+// One triangle far below, so that nothing gives shade or shelter.
+inline mesh::TriangleMesh nothing_near() {
+  mesh::TriangleMesh mesh;
+  mesh.positions = {{-1, -1, -1000}, {1, -1, -1000}, {0, 1, -1000}};
+  mesh.triangles = {0, 1, 2};
+  return mesh;
+}
+
 }  // namespace strata::test

@@ -18,12 +18,19 @@ RECIPE_MEMBERS = (
     "north_deg",
     "from",
     "to",
+    "wind_shares",
+    "wind_speed_m_s",
+    "rain_mm",
+    "rain_mm_per_hour",
     "rays",
     "absolute",
     "model",
     "property",
     "source",
 )
+
+# The wind from the west carries as much rain through a vertical plane as falls on the ground.
+RAIN = {"wind_shares": [0, 0, 0, 0, 0, 0, 1, 0], "wind_speed_m_s": 4.5, "rain_mm": 800}
 
 
 def run(server, path, body, state="done", **more):
@@ -115,6 +122,12 @@ def test_refusals(server):
         (layer(kind="sun_energy", latitude_deg=50, north_deg=0, to="June"), 422, "compute.to"),
         (layer(kind="slope", latitude_deg=50), 422, "compute.latitude_deg"),
         (layer(kind="slope", to="06-01"), 422, "compute.to"),
+        (layer(kind="driving_rain"), 422, "compute.wind_shares"),
+        (layer(kind="driving_rain", **dict(RAIN, wind_shares=[1] * 9)), 422, "compute.wind_shares"),
+        (layer(kind="driving_rain", **dict(RAIN, wind_shares=[0] * 8)), 422, "compute.wind_shares"),
+        (layer(kind="driving_rain", **dict(RAIN, rain_mm=0)), 422, "compute.rain_mm"),
+        (layer(kind="driving_rain", **RAIN), 422, "compute.north_deg"),
+        (layer(kind="slope", rain_mm=500), 422, "compute.rain_mm"),
         (layer(kind="height", sql="x"), 422, "compute.sql"),
         (layer(kind="vertex_property"), 422, "compute.property"),
         (
@@ -250,6 +263,18 @@ def test_kinds(server):
         for where in ("x%20%3C%20-45", "x%20%3E%2045")
     ]
     assert sides[0] > 3 * sides[1], sides
+    # A ball gets a quarter of the length of the rain's vector. Its waves increase its area.
+    wet, statistics = compute(server, BALL, "driving_rain", north_deg=0, **RAIN)
+    assert wet["unit"] == "l/m²" and "ISO 15927-3" in wet["description"], wet
+    assert 0.88 < statistics["mean"] / (math.hypot(800, 800) / 4) < 1.01, statistics
+    assert statistics["min"] == 0 and 1050 < statistics["max"] < 1150, statistics
+    west, east = [
+        server.ok("GET", f"{BALL}/layers/{wet['id']}/statistics?where={where}").json()["mean"]
+        for where in ("x%20%3C%20-45", "x%20%3E%2045")
+    ]
+    assert west > 600 and east < 60, (west, east)
+    (edit,) = server.get(f"{BALL}/layers/{wet['id']}/edits").json()["edits"]
+    assert edit["recipe"]["rain_mm_per_hour"] == 1 and edit["recipe"]["wind_shares"][6] == 1, edit
     print("kinds: ok", flush=True)
 
 

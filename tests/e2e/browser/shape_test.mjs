@@ -191,6 +191,31 @@ test("the sun of a summer needs the latitude and the direction of north", async 
   await keep_picture("sun");
 });
 
+test("driving rain needs the wind rose, the wind and the rain", async () => {
+  const { wind_shares, wind_speed_m_s, rain_mm } = words.shape.rain;
+  const { title } = words.shape.kinds.driving_rain;
+  await start_computing(title, { [wind_shares.label]: "1 2 3" });
+  await button(words.layer_dialog.compute).click();
+  await page.getByText(wind_shares.wrong).waitFor();
+  await page.getByLabel(wind_shares.label).fill("10 8 6 8 14 28 18 8");
+  await page.getByLabel(wind_speed_m_s.label).fill("4.5");
+  await page.getByLabel(rain_mm.label, { exact: true }).fill("760");
+  await page.getByLabel(words.shape.sun.north.label).fill("20");
+  await keep_picture("rain-dialog");
+  await button(words.layer_dialog.compute).click();
+  await button(words.layers.select(title)).waitFor();
+  const layer = await server.json("GET", `${base}/layers/driving-rain`);
+  assert.equal(layer.unit, "l/m²");
+  const [edit] = await wait_for(async () => {
+    const { edits } = await server.json("GET", `${base}/layers/driving-rain/edits`);
+    return edits.length > 0 ? edits : null;
+  }, "the edit of the layer");
+  assert.deepEqual(edit.recipe.wind_shares, [10, 8, 6, 8, 14, 28, 18, 8]);
+  assert.deepEqual([edit.recipe.rain_mm, edit.recipe.north_deg], [760, 20]);
+  await browser.settled();
+  await keep_picture("rain");
+});
+
 test("what cannot be computed says why", async () => {
   await start_computing("Distance to the edge");
   await button(words.layer_dialog.compute).click();

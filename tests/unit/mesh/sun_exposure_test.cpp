@@ -1,6 +1,6 @@
 // The path of the sun, and sunlight on planes, a wall, a box and a cone, compared with formulas and
 // with sums over single minutes.
-#include "mesh/analysis/sun_exposure.h"
+#include "mesh/analysis/sun_sectors.h"
 
 #include <gtest/gtest.h>
 
@@ -53,39 +53,31 @@ std::vector<Minute> minutes(double latitude, int first, int days) {
 }
 
 // Adds up the minutes in which the sun is in front of the surface and not hidden.
-SunExposure::Sum by_minutes(
+SkyExposure::Sum by_minutes(
     const std::vector<Minute>& sun, const glm::dvec3& normal,
     const std::function<bool(const glm::dvec3&)>& is_hidden = [](const auto&) { return false; }) {
-  SunExposure::Sum sum;
+  SkyExposure::Sum sum;
   for (const Minute& minute : sun) {
     const double cosine = glm::dot(minute.sun, normal);
     if (cosine <= 0 || is_hidden(minute.sun)) continue;
     sum.hours += 1 / 60.0;
-    sum.energy += minute.energy * cosine;
+    sum.amount += minute.energy * cosine;
   }
   return sum;
 }
 
-double hours_of(const std::vector<SunSector>& sectors) {
+double hours_of(const std::vector<SkySector>& sectors) {
   double hours = 0;
-  for (const SunSector& sector : sectors) hours += sector.hours;
+  for (const SkySector& sector : sectors) hours += sector.hours;
   return hours;
 }
 
-std::unique_ptr<SunExposure> exposure(const TriangleMesh& mesh, double latitude, SunPeriod period) {
+std::unique_ptr<SkyExposure> exposure(const TriangleMesh& mesh, double latitude, SunPeriod period) {
   Progress progress;
   auto geometry = std::make_shared<const Geometry>(test::geometry_of(mesh));
-  auto made = SunExposure::make(geometry, sun_sectors(latitude, period), progress);
+  auto made = SkyExposure::make(geometry, sun_sectors(latitude, period), progress);
   EXPECT_TRUE(made);
   return std::move(*made);
-}
-
-// One triangle far below, so that nothing hides the sun.
-TriangleMesh nothing_near() {
-  TriangleMesh mesh;
-  mesh.positions = {{-1, -1, -1000}, {1, -1, -1000}, {0, 1, -1000}};
-  mesh.triangles = {0, 1, 2};
-  return mesh;
 }
 
 TEST(SunSectors, have_the_length_of_the_day) {
@@ -111,7 +103,7 @@ TEST(SunSectors, are_highest_at_noon_in_the_south_or_north) {
   for (const double latitude : {50.0, -50.0}) {
     const auto sectors = sun_sectors(latitude, {kEquinox, 1});
     const auto noon = *std::ranges::max_element(
-        sectors, {}, [](const SunSector& sector) { return sector.direction.z; });
+        sectors, {}, [](const SkySector& sector) { return sector.direction.z; });
     EXPECT_NEAR(glm::degrees(std::asin(noon.direction.z)), 40, 2);
     EXPECT_NEAR(noon.direction.x, 0, 0.1);
     EXPECT_EQ(noon.direction.y<0, latitude> 0);
@@ -123,7 +115,7 @@ TEST(SunSectors, of_a_year_are_few) { EXPECT_LT(sun_sectors(50, {}).size(), 450u
 TEST(SunExposure, of_free_planes_is_that_of_all_minutes) {
   for (const double latitude : {0.0, 37.9, -33.0, 65.0})
     for (const SunPeriod period : {SunPeriod{}, SunPeriod{kJune - 15, 30}}) {
-      const auto light = exposure(nothing_near(), latitude, period);
+      const auto light = exposure(test::nothing_near(), latitude, period);
       const auto sun = minutes(latitude, period.first, period.days);
       const double most = by_minutes(sun, {0, 0, 1}).hours;
       for (const glm::dvec3 facing :
@@ -133,7 +125,7 @@ TEST(SunExposure, of_free_planes_is_that_of_all_minutes) {
         const auto right = by_minutes(sun, normal);
         const auto found = light->at({0, 0, 1000}, glm::vec3(normal));
         EXPECT_NEAR(found.hours, right.hours, 0.03 * most) << latitude << ' ' << facing.y;
-        EXPECT_NEAR(found.energy, right.energy, 0.01 * right.energy + 1)
+        EXPECT_NEAR(found.amount, right.amount, 0.01 * right.amount + 1)
             << latitude << ' ' << facing.x << ' ' << facing.y;
       }
     }
@@ -153,8 +145,8 @@ TEST(SunExposure, behind_a_wall_is_that_of_all_minutes) {
         sun, {0, 0, 1}, [&](const glm::dvec3& to) { return to.y < 0 && to.z / -to.y < 1 / away; });
     const auto found = light->at(glm::vec3(glm::dvec3(0, away, 1e-6) - geometry.origin), {0, 0, 1});
     EXPECT_NEAR(found.hours, right.hours, 0.04 * open.hours) << away;
-    EXPECT_NEAR(found.energy, right.energy, 0.04 * open.energy) << away;
-    EXPECT_LT(found.energy, open.energy) << away;
+    EXPECT_NEAR(found.amount, right.amount, 0.04 * open.amount) << away;
+    EXPECT_LT(found.amount, open.amount) << away;
   }
 }
 
@@ -164,11 +156,11 @@ TEST(SunExposure, of_a_box_depends_on_its_sides) {
   const auto top = at({0, 0, 1}), south = at({0, -1, 0}), north = at({0, 1, 0}),
              east = at({1, 0, 0}), west = at({-1, 0, 0}), bottom = at({0, 0, -1});
   const auto sun = minutes(45, 0, 365);
-  EXPECT_NEAR(top.energy, by_minutes(sun, {0, 0, 1}).energy, 0.01 * top.energy);
-  EXPECT_NEAR(south.energy, by_minutes(sun, {0, -1, 0}).energy, 0.01 * south.energy);
-  EXPECT_NEAR(east.energy, west.energy, 0.01 * east.energy);
-  EXPECT_GT(south.energy, east.energy);
-  EXPECT_GT(east.energy, 3 * north.energy);
+  EXPECT_NEAR(top.amount, by_minutes(sun, {0, 0, 1}).amount, 0.01 * top.amount);
+  EXPECT_NEAR(south.amount, by_minutes(sun, {0, -1, 0}).amount, 0.01 * south.amount);
+  EXPECT_NEAR(east.amount, west.amount, 0.01 * east.amount);
+  EXPECT_GT(south.amount, east.amount);
+  EXPECT_GT(east.amount, 3 * north.amount);
   EXPECT_EQ(bottom.hours, 0);
 }
 
@@ -194,17 +186,17 @@ TEST(SunExposure, of_a_cone_is_that_of_its_tangent_planes) {
                              1e-3 * normal - geometry.origin;
     const auto right = by_minutes(sun, normal);
     const auto found = light->at(glm::vec3(place), glm::vec3(normal));
-    EXPECT_NEAR(found.energy, right.energy, 0.015 * right.energy) << i;
+    EXPECT_NEAR(found.amount, right.amount, 0.015 * right.amount) << i;
   }
 }
 
 TEST(SunExposure, needs_a_normal_and_can_be_cancelled) {
-  const auto light = exposure(nothing_near(), 45, {kJune, 1});
+  const auto light = exposure(test::nothing_near(), 45, {kJune, 1});
   EXPECT_TRUE(std::isnan(light->at({0, 0, 0}, {0, 0, 0}).hours));
   Progress progress;
   progress.cancel();
   const auto refused =
-      SunExposure::make(std::make_shared<const Geometry>(test::geometry_of(test::ball(100))),
+      SkyExposure::make(std::make_shared<const Geometry>(test::geometry_of(test::ball(100))),
                         sun_sectors(45, {kJune, 1}), progress);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::cancelled);

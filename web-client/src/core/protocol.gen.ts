@@ -1937,6 +1937,10 @@ export interface Recipe {
   north_deg?: number;
   from?: string;
   to?: string;
+  wind_shares?: number[];
+  wind_speed_m_s?: number;
+  rain_mm?: number;
+  rain_mm_per_hour?: number;
   tolerance_mm?: number;
   max_angle?: number;
   rays?: number;
@@ -2770,8 +2774,8 @@ export interface TableQuantities {
 
 /** Values that are computed from the shape of the model. The response is a job. The layer exists when the job is finished. If unit, palette or description are absent, the server derives them from the recipe. */
 export interface ShapeRecipe {
-  /** sun_hours: the hours of direct sun in a period of the year; sun_energy: its energy under a clear sky, in kWh/m²; both with the shadows of the model itself; change: the signed M3C2 distance (Lague, Brodu and Leroux 2013) since the other model, in mm; level_of_detection: the smallest change that noise and alignment cannot explain, at 95 %, in mm; significant_change: 0 where the change is within the level of detection, 1 for a gain, 2 for a loss of material. */
-  kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "change" | "level_of_detection" | "significant_change" | "sun_hours" | "sun_energy" | "vertex_property";
+  /** sun_hours: the hours of direct sun in a period of the year; sun_energy: its energy under a clear sky, in kWh/m²; both with the shadows of the model itself; driving_rain: the rain that meets the surface, in l/m² (equal to mm), with the wind by the free-field formula of ISO 15927-3 and with the shelter of the model itself; change: the signed M3C2 distance (Lague, Brodu and Leroux 2013) since the other model, in mm; level_of_detection: the smallest change that noise and alignment cannot explain, at 95 %, in mm; significant_change: 0 where the change is within the level of detection, 1 for a gain, 2 for a loss of material. */
+  kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "change" | "level_of_detection" | "significant_change" | "sun_hours" | "sun_energy" | "driving_rain" | "vertex_property";
   /** For curvature and roughness, the radius of the neighborhood. Default: the length of four edges of the mesh. */
   radius_mm?: number;
   /** For ambient occlusion, model distance and changes, the maximum search distance. Default: a quarter of the model's diagonal for ambient occlusion, and a tenth for the others, but at most 50 projection scales for changes. */
@@ -2784,12 +2788,20 @@ export interface ShapeRecipe {
   registration_mm?: number;
   /** For the sun, the latitude of the site in degrees, positive in the north. Required. */
   latitude_deg?: number;
-  /** For the sun, the clockwise angle, as seen from above, from the direction into the front view to north. Default: the `north` of the model. */
+  /** For the sun and the rain, the clockwise angle, as seen from above, from the direction into the front view to north. Default: the `north` of the model. */
   north_deg?: number;
   /** For the sun, the first day of the period, in the format MM-DD. Default: 01-01. */
   from?: string;
   /** For the sun, the last day of the period, in the format MM-DD. Before `from`, it is a day of the next year. Default: 12-31. */
   to?: string;
+  /** For the rain, how much of it falls with wind from each direction: 8 or 16 numbers, clockwise from north. Only their relations count. Required. */
+  wind_shares?: number[];
+  /** For the rain, the mean speed of the wind while it rains. Required. */
+  wind_speed_m_s?: number;
+  /** The rain on level ground in the period, usually a year. Required for driving rain. */
+  rain_mm?: number;
+  /** The mean intensity of the rain while it rains. Default: 1. */
+  rain_mm_per_hour?: number;
   /** For ambient occlusion, the number of rays for each point. Default: 64. */
   rays?: number;
   /** For height, true: use the world coordinate instead of the height above the lowest point. Default: false. */

@@ -850,6 +850,7 @@ export const texts = {
       distance: "Abstände",
       change: "Veränderung zwischen Aufnahmen",
       sun: "Sonne",
+      rain: "Regen",
       file: "Aus der Datei des Scans",
     },
     kinds: {
@@ -914,6 +915,10 @@ export const texts = {
         title: "Sonnenenergie",
         lead: "Kilowattstunden pro Quadratmeter direkter Sonne bei klarem Himmel im Zeitraum, mit den Schatten des Modells selbst.",
       },
+      driving_rain: {
+        title: "Schlagregen",
+        lead: "Liter Regen pro Quadratmeter, mit dem Wind, der Neigung der Oberfläche und dem Schutz durch das Modell selbst.",
+      },
       vertex_property: {
         title: "Werte aus der Datei des Scans",
         lead: "Eine Zahl, die die Scansoftware für jeden Punkt gespeichert hat: Qualität, Konfidenz, Intensität.",
@@ -953,6 +958,33 @@ export const texts = {
       },
       from: "Von Anfang",
       to: "Bis Ende",
+    },
+    rain: {
+      wind_shares: {
+        label: "Wind bei Regen, aus N, NO, O …",
+        hint: "10 8 6 8 14 28 18 8",
+        lead: "Anteile von 8 oder 16 Richtungen, im Uhrzeigersinn ab Norden, durch Leerzeichen getrennt.",
+        wrong:
+          "Geben Sie 8 oder 16 Zahlen für die Windrichtungen ein, im Uhrzeigersinn ab Norden und durch Leerzeichen getrennt. Keine Zahl darf negativ sein.",
+      },
+      wind_speed_m_s: {
+        label: "Windgeschwindigkeit",
+        hint: "etwa 4,5",
+        lead: "Mittelwert bei Regen.",
+        wrong: "Geben Sie die mittlere Windgeschwindigkeit ein, von 0 bis 100 m/s.",
+      },
+      rain_mm: {
+        label: "Regen",
+        hint: "etwa 760",
+        lead: "Eines Jahres, auf ebenem Boden.",
+        wrong: "Geben Sie den Regen eines Jahres ein, von 0,1 bis 100.000 mm.",
+      },
+      rain_mm_per_hour: {
+        label: "Stärke des Regens",
+        hint: "1",
+        lead: "Mittelwert bei Regen.",
+        wrong: "Geben Sie die Stärke des Regens ein, von 0,01 bis 1000 mm pro Stunde.",
+      },
     },
     rays: "Strahlen je Punkt",
     rays_hint: "Mehr Strahlen ergeben glattere Werte und dauern länger",

@@ -813,6 +813,7 @@ export const texts = {
       distance: "Distances",
       change: "Change between surveys",
       sun: "Sun",
+      rain: "Rain",
       file: "From the scan's file",
     },
     kinds: {
@@ -877,6 +878,10 @@ export const texts = {
         title: "Energy of the sun",
         lead: "Kilowatt-hours per square meter of direct sun under a clear sky in the period, with the shadows of the model itself.",
       },
+      driving_rain: {
+        title: "Driving rain",
+        lead: "Liters of rain per square meter, with the wind, the inclination of the surface and the shelter of the model itself.",
+      },
       vertex_property: {
         title: "Values from the scan's file",
         lead: "A number that the scanning software stored for each point, such as quality, confidence or intensity.",
@@ -916,6 +921,33 @@ export const texts = {
       },
       from: "From the start of",
       to: "To the end of",
+    },
+    rain: {
+      wind_shares: {
+        label: "Wind while it rains, from N, NE, E …",
+        hint: "10 8 6 8 14 28 18 8",
+        lead: "Shares of 8 or 16 directions, clockwise from north, separated by spaces.",
+        wrong:
+          "Enter 8 or 16 numbers for the directions of the wind, clockwise from north, separated by spaces. No number can be negative.",
+      },
+      wind_speed_m_s: {
+        label: "Speed of the wind",
+        hint: "such as 4.5",
+        lead: "Mean while it rains.",
+        wrong: "Enter the mean speed of the wind, from 0 to 100 m/s.",
+      },
+      rain_mm: {
+        label: "Rain",
+        hint: "such as 760",
+        lead: "Of a year, on level ground.",
+        wrong: "Enter the rain of a year, from 0.1 to 100,000 mm.",
+      },
+      rain_mm_per_hour: {
+        label: "Intensity of the rain",
+        hint: "1",
+        lead: "Mean while it rains.",
+        wrong: "Enter the intensity of the rain, from 0.01 to 1000 mm per hour.",
+      },
     },
     rays: "Rays per point",
     rays_hint: "More rays give smoother values and take longer",

@@ -840,6 +840,7 @@ export const texts = {
       distance: "Distancias",
       change: "Cambio entre levantamientos",
       sun: "Sol",
+      rain: "Lluvia",
       file: "Del archivo del escaneo",
     },
     kinds: {
@@ -904,6 +905,10 @@ export const texts = {
         title: "Energía del sol",
         lead: "Kilovatios hora por metro cuadrado de sol directo con cielo despejado en el periodo, con las sombras del propio modelo.",
       },
+      driving_rain: {
+        title: "Lluvia con viento",
+        lead: "Litros de lluvia por metro cuadrado, con el viento, la inclinación de la superficie y el abrigo del propio modelo.",
+      },
       vertex_property: {
         title: "Valores del archivo del escaneo",
         lead: "Un número que el programa de escaneo guardó para cada punto: calidad, confianza, intensidad.",
@@ -943,6 +948,33 @@ export const texts = {
       },
       from: "Desde el comienzo de",
       to: "Hasta el final de",
+    },
+    rain: {
+      wind_shares: {
+        label: "Viento con lluvia, del N, NE, E …",
+        hint: "10 8 6 8 14 28 18 8",
+        lead: "Proporciones de 8 o 16 direcciones, en sentido horario desde el norte, separadas por espacios.",
+        wrong:
+          "Introduzca 8 o 16 números para las direcciones del viento, en sentido horario desde el norte y separados por espacios. Ningún número puede ser negativo.",
+      },
+      wind_speed_m_s: {
+        label: "Velocidad del viento",
+        hint: "por ejemplo 4,5",
+        lead: "Media mientras llueve.",
+        wrong: "Introduzca la velocidad media del viento, de 0 a 100 m/s.",
+      },
+      rain_mm: {
+        label: "Lluvia",
+        hint: "por ejemplo 760",
+        lead: "De un año, sobre suelo llano.",
+        wrong: "Introduzca la lluvia de un año, de 0,1 a 100 000 mm.",
+      },
+      rain_mm_per_hour: {
+        label: "Intensidad de la lluvia",
+        hint: "1",
+        lead: "Media mientras llueve.",
+        wrong: "Introduzca la intensidad de la lluvia, de 0,01 a 1000 mm por hora.",
+      },
     },
     rays: "Rayos por punto",
     rays_hint: "Con más rayos, los valores son más suaves y el cálculo tarda más",

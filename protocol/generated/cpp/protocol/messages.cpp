@@ -885,6 +885,7 @@ std::string_view name(ShapeRecipeKind value) {
     case ShapeRecipeKind::significant_change: return "significant_change";
     case ShapeRecipeKind::sun_hours: return "sun_hours";
     case ShapeRecipeKind::sun_energy: return "sun_energy";
+    case ShapeRecipeKind::driving_rain: return "driving_rain";
     case ShapeRecipeKind::vertex_property: return "vertex_property";
   }
   return {};
@@ -908,6 +909,7 @@ void read(const nlohmann::json& json, ShapeRecipeKind& value) {
   if (text == "significant_change") value = ShapeRecipeKind::significant_change;
   if (text == "sun_hours") value = ShapeRecipeKind::sun_hours;
   if (text == "sun_energy") value = ShapeRecipeKind::sun_energy;
+  if (text == "driving_rain") value = ShapeRecipeKind::driving_rain;
   if (text == "vertex_property") value = ShapeRecipeKind::vertex_property;
 }
 
@@ -3339,6 +3341,10 @@ void read(const nlohmann::json& json, ShapeRecipe& value) {
   read_optional_member(json, "north_deg", value.north_deg);
   read_optional_member(json, "from", value.from);
   read_optional_member(json, "to", value.to);
+  read_optional_member(json, "wind_shares", value.wind_shares);
+  read_optional_member(json, "wind_speed_m_s", value.wind_speed_m_s);
+  read_optional_member(json, "rain_mm", value.rain_mm);
+  read_optional_member(json, "rain_mm_per_hour", value.rain_mm_per_hour);
   read_optional_member(json, "rays", value.rays);
   read_optional_member(json, "absolute", value.absolute);
   read_optional_member(json, "model", value.model);
@@ -3358,6 +3364,10 @@ nlohmann::json to_json(const ShapeRecipe& value) {
   write_optional_member(json, "north_deg", value.north_deg);
   write_optional_member(json, "from", value.from);
   write_optional_member(json, "to", value.to);
+  write_optional_member(json, "wind_shares", value.wind_shares);
+  write_optional_member(json, "wind_speed_m_s", value.wind_speed_m_s);
+  write_optional_member(json, "rain_mm", value.rain_mm);
+  write_optional_member(json, "rain_mm_per_hour", value.rain_mm_per_hour);
   write_optional_member(json, "rays", value.rays);
   write_member(json, "absolute", value.absolute);
   write_optional_member(json, "model", value.model);

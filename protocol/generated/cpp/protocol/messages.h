@@ -2540,7 +2540,7 @@ nlohmann::json to_json(const TemplateUse& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateUse> = Schema::TemplateUse;
 
-enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, change, level_of_detection, significant_change, sun_hours, sun_energy, vertex_property };
+enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, change, level_of_detection, significant_change, sun_hours, sun_energy, driving_rain, vertex_property };
 std::string_view name(ShapeRecipeKind value);
 void read(const nlohmann::json& json, ShapeRecipeKind& value);
 nlohmann::json to_json(const ShapeRecipeKind& value);
@@ -2548,10 +2548,12 @@ nlohmann::json to_json(const ShapeRecipeKind& value);
 // Values that are computed from the shape of the model. The response is a job. The layer exists when the job is finished. If unit, palette or description are absent, the server derives them from the recipe.
 struct ShapeRecipe {
   // sun_hours: the hours of direct sun in a period of the year; sun_energy: its energy under a
-  // clear sky, in kWh/m²; both with the shadows of the model itself; change: the signed M3C2
-  // distance (Lague, Brodu and Leroux 2013) since the other model, in mm; level_of_detection: the
-  // smallest change that noise and alignment cannot explain, at 95 %, in mm; significant_change: 0
-  // where the change is within the level of detection, 1 for a gain, 2 for a loss of material.
+  // clear sky, in kWh/m²; both with the shadows of the model itself; driving_rain: the rain that
+  // meets the surface, in l/m² (equal to mm), with the wind by the free-field formula of ISO
+  // 15927-3 and with the shelter of the model itself; change: the signed M3C2 distance (Lague,
+  // Brodu and Leroux 2013) since the other model, in mm; level_of_detection: the smallest change
+  // that noise and alignment cannot explain, at 95 %, in mm; significant_change: 0 where the change
+  // is within the level of detection, 1 for a gain, 2 for a loss of material.
   ShapeRecipeKind kind{};
   // For curvature and roughness, the radius of the neighborhood. Default: the length of four edges
   // of the mesh.
@@ -2570,14 +2572,23 @@ struct ShapeRecipe {
   std::optional<double> registration_mm;
   // For the sun, the latitude of the site in degrees, positive in the north. Required.
   std::optional<double> latitude_deg;
-  // For the sun, the clockwise angle, as seen from above, from the direction into the front view to
-  // north. Default: the `north` of the model.
+  // For the sun and the rain, the clockwise angle, as seen from above, from the direction into the
+  // front view to north. Default: the `north` of the model.
   std::optional<double> north_deg;
   // For the sun, the first day of the period, in the format MM-DD. Default: 01-01.
   std::optional<std::string> from;
   // For the sun, the last day of the period, in the format MM-DD. Before `from`, it is a day of the
   // next year. Default: 12-31.
   std::optional<std::string> to;
+  // For the rain, how much of it falls with wind from each direction: 8 or 16 numbers, clockwise
+  // from north. Only their relations count. Required.
+  std::optional<std::vector<double>> wind_shares;
+  // For the rain, the mean speed of the wind while it rains. Required.
+  std::optional<double> wind_speed_m_s;
+  // The rain on level ground in the period, usually a year. Required for driving rain.
+  std::optional<double> rain_mm;
+  // The mean intensity of the rain while it rains. Default: 1.
+  std::optional<double> rain_mm_per_hour;
   // For ambient occlusion, the number of rays for each point. Default: 64.
   std::optional<int> rays;
   // For height, true: use the world coordinate instead of the height above the lowest point.

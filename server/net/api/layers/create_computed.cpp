@@ -25,6 +25,10 @@ jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& body) {
   recipe.north_deg = body.north_deg;
   recipe.from = body.from.value_or("");
   recipe.to = body.to.value_or("");
+  recipe.wind_shares = body.wind_shares.value_or(std::vector<double>());
+  recipe.wind_speed_m_s = body.wind_speed_m_s;
+  recipe.rain_mm = body.rain_mm;
+  recipe.rain_mm_per_hour = body.rain_mm_per_hour;
   recipe.rays = body.rays;
   recipe.absolute = body.absolute;
   recipe.model = body.model.value_or("");

@@ -9,11 +9,13 @@ import type { Model, VertexPropertyName } from "../../core/types";
 import type { ModelSession } from "../../session/model-session";
 import { numberInput } from "../../ui/number-input";
 import {
+  kRainNumbers,
   kRays,
   kShapeGroups,
   kSunAngles,
   type Months,
   otherModels,
+  type RainNumber,
   recipeOf,
   shapeKind,
   type ShapeInput,
@@ -41,6 +43,10 @@ export class StrataShapeFields extends LitElement {
     latitude: "",
     north: "",
     months: { from: 1, to: 12 },
+    wind_shares: "",
+    wind_speed_m_s: "",
+    rain_mm: "",
+    rain_mm_per_hour: "",
     rays: "",
     absolute: false,
     model: "",
@@ -148,6 +154,8 @@ export class StrataShapeFields extends LitElement {
             ${kLengths.map((name) => (info.takes.includes(name) ? this.lengthField(name) : nothing))}
             ${kAngles.map((name) => (info.takes.includes(name) ? this.angleField(name) : nothing))}
             ${info.takes.includes("months") ? kEnds.map((end) => this.monthField(end)) : nothing}
+            ${info.takes.includes("wind_shares") ? this.windField() : nothing}
+            ${kRain.map((name) => (info.takes.includes(name) ? this.rainField(name) : nothing))}
             ${info.takes.includes("rays") ? this.raysField() : nothing}
             ${info.takes.includes("absolute") ? this.absoluteField() : nothing}
           </div>`
@@ -196,6 +204,35 @@ export class StrataShapeFields extends LitElement {
       <select name=${end} @change=${choose}>
         ${Array.from({ length: 12 }, (_, at) => html`<option value=${at + 1} ?selected=${at + 1 === this._input.months[end]}>${month.format(Date.UTC(2001, at))}</option>`)}
       </select>
+    </label>`;
+  }
+
+  private windField(): TemplateResult {
+    const { label, hint, lead } = words.rain.wind_shares;
+    return html`<label class="field">
+      <span>${label}</span>
+      <input
+        name="wind_shares"
+        autocomplete="off"
+        .value=${this._input.wind_shares}
+        placeholder=${hint}
+        aria-invalid=${this.wrong === "wind_shares" ? "true" : nothing}
+        @input=${(event: Event) => this.change({ wind_shares: (event.target as HTMLInputElement).value })}
+      />
+      <small>${lead}</small>
+    </label>`;
+  }
+
+  private rainField(name: RainNumber): TemplateResult {
+    const { label, hint, lead } = words.rain[name];
+    const { least, most, unit } = kRainNumbers[name];
+    return html`<label class="field">
+      <span>${label}</span>
+      <div class="length">
+        ${numberInput({ name, value: this._input[name], placeholder: hint, min: least, max: most, wrong: this.wrong === name, typed: (text) => this.change({ [name]: text }) })}
+        ${unit}
+      </div>
+      <small>${lead}</small>
     </label>`;
   }
 
@@ -263,6 +300,7 @@ export class StrataShapeFields extends LitElement {
 
 const kLengths = ["radius", "registration", "projection", "normal", "distance"] as const;
 
+const kRain = ["wind_speed_m_s", "rain_mm", "rain_mm_per_hour"] as const;
 const kAngles = ["latitude", "north"] as const;
 const kEnds = ["from", "to"] as const;
 

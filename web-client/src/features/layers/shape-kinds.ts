@@ -15,7 +15,15 @@ export interface ShapeKindInfo {
   lead: string;
   /** The parameters that this kind requires. */
   takes: readonly (
-    ShapeLength | SunAngle | "months" | "rays" | "absolute" | "model" | "property"
+    | ShapeLength
+    | SunAngle
+    | RainNumber
+    | "months"
+    | "wind_shares"
+    | "rays"
+    | "absolute"
+    | "model"
+    | "property"
   )[];
 }
 
@@ -26,6 +34,21 @@ export type ShapeLength = "radius" | "distance" | "normal" | "projection" | "reg
 export type SunAngle = "latitude" | "north";
 export const kSunAngles = { latitude: 90, north: 360 } as const; // the largest values
 
+/** The numbers of the climate that users can enter, with their least and largest values. */
+export type RainNumber = "wind_speed_m_s" | "rain_mm" | "rain_mm_per_hour";
+export const kRainNumbers = {
+  wind_speed_m_s: { least: 0, most: 100, unit: "m/s" },
+  rain_mm: { least: 0.1, most: 100_000, unit: "mm" },
+  rain_mm_per_hour: { least: 0.01, most: 1000, unit: "mm/h" },
+} as const;
+
+const kRainTakes = [
+  "north",
+  "wind_shares",
+  "wind_speed_m_s",
+  "rain_mm",
+  "rain_mm_per_hour",
+] as const;
 const kSunTakes = ["latitude", "north", "months"] as const;
 const kChangeTakes = ["model", "registration", "projection", "normal", "distance"] as const;
 
@@ -74,6 +97,10 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
     ],
   },
   {
+    title: texts.shape.groups.rain,
+    kinds: [{ kind: "driving_rain", ...words.driving_rain, takes: kRainTakes }],
+  },
+  {
     title: texts.shape.groups.file,
     kinds: [{ kind: "vertex_property", ...words.vertex_property, takes: ["property"] }],
   },
@@ -89,9 +116,10 @@ export interface Months {
 }
 
 /** The user's input, as texts. */
-export interface ShapeInput extends Record<ShapeLength | SunAngle, string> {
+export interface ShapeInput extends Record<ShapeLength | SunAngle | RainNumber, string> {
   kind: ShapeKind;
   months: Months;
+  wind_shares: string;
   rays: string;
   absolute: boolean;
   model: string;
@@ -129,6 +157,20 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
     recipe.from = `${twoDigits(from)}-01`;
     recipe.to = `${twoDigits(to)}-${kDaysOfMonth[to - 1]}`;
   }
+  if (takes.includes("wind_shares")) {
+    const shares = windShares(input.wind_shares);
+    if (!shares) return { problem: texts.shape.rain.wind_shares.wrong, field: "wind_shares" };
+    recipe.wind_shares = shares;
+  }
+  for (const name of ["wind_speed_m_s", "rain_mm", "rain_mm_per_hour"] as const) {
+    const text = input[name];
+    if (!takes.includes(name) || (name === "rain_mm_per_hour" && text.trim() === "")) continue;
+    const value = readNumber(text);
+    const { least, most } = kRainNumbers[name];
+    if (!(value >= least && value <= most))
+      return { problem: texts.shape.rain[name].wrong, field: name };
+    recipe[name] = value;
+  }
   if (takes.includes("rays") && input.rays.trim() !== "") {
     const rays = readNumber(input.rays);
     const { least, most } = kRays;
@@ -149,6 +191,18 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
     recipe.property = input.property.slice(slash + 1);
   }
   return recipe;
+}
+
+/** Returns 8 or 16 numbers from a text that separates them by spaces or semicolons. */
+function windShares(text: string): number[] | undefined {
+  const shares = text
+    .split(/[\s;]+/)
+    .filter((part) => part !== "")
+    .map(readNumber);
+  const isRose = shares.length === 8 || shares.length === 16;
+  return isRose && shares.every((share) => share >= 0) && shares.some((share) => share > 0)
+    ? shares
+    : undefined;
 }
 
 const kDaysOfMonth = [31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] as const;

@@ -23,6 +23,10 @@ const input: ShapeInput = {
   latitude: "",
   north: "",
   months: { from: 1, to: 12 },
+  wind_shares: "",
+  wind_speed_m_s: "",
+  rain_mm: "",
+  rain_mm_per_hour: "",
   rays: "",
   absolute: false,
   model: "",
@@ -96,6 +100,36 @@ describe("a recipe from what was filled in", () => {
     for (const north of ["361", "up"])
       expect(recipeOf({ ...sun, north })).toMatchObject({ field: "north" });
   });
+  it("takes the wind rose and the rain for driving rain alone", () => {
+    const climate = { wind_shares: "10 8 6 8; 14 28.5\t18 8", wind_speed_m_s: "4", rain_mm: "760" };
+    const rain = { ...input, kind: "driving_rain" as const, ...climate };
+    const recipe = {
+      kind: "driving_rain",
+      wind_shares: [10, 8, 6, 8, 14, 28.5, 18, 8],
+      wind_speed_m_s: 4,
+      rain_mm: 760,
+    };
+    expect(recipeOf(rain)).toEqual(recipe);
+    expect(recipeOf({ ...rain, north: "20", rain_mm_per_hour: "1.5" })).toEqual({
+      ...recipe,
+      north_deg: 20,
+      rain_mm_per_hour: 1.5,
+    });
+    expect(recipeOf({ ...input, ...climate })).toEqual({ kind: "roughness" });
+    for (const wind_shares of [
+      "",
+      "1 2 3",
+      "0 0 0 0 0 0 0 0",
+      "1 1 1 1 1 1 1 -1",
+      "W W W W W W W W",
+    ])
+      expect(recipeOf({ ...rain, wind_shares })).toMatchObject({ field: "wind_shares" });
+    expect(recipeOf({ ...rain, wind_speed_m_s: "" })).toMatchObject({ field: "wind_speed_m_s" });
+    expect(recipeOf({ ...rain, rain_mm: "0" })).toMatchObject({ field: "rain_mm" });
+    expect(recipeOf({ ...rain, rain_mm_per_hour: "0" })).toMatchObject({
+      field: "rain_mm_per_hour",
+    });
+  });
   it("names the field that is wrong", () => {
     for (const radius of ["0", "-3", "wide"])
       expect(recipeOf({ ...input, radius })).toEqual({
@@ -111,7 +145,7 @@ describe("a recipe from what was filled in", () => {
   });
   it("has words for every kind that the server knows", () => {
     const kinds = kShapeGroups.flatMap((group) => group.kinds.map(({ kind }) => kind));
-    expect(new Set(kinds).size).toBe(17);
+    expect(new Set(kinds).size).toBe(18);
     for (const group of kShapeGroups)
       for (const { title, lead } of group.kinds) expect(title && lead).toBeTruthy();
   });

@@ -1,14 +1,10 @@
-#include "mesh/analysis/sun_exposure.h"
+#include "mesh/analysis/sun_sectors.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
-
-#include "core/progress.h"
-#include "mesh/analysis/ray_scene.h"
 
 namespace strata::mesh {
 namespace {
@@ -38,34 +34,9 @@ double direct_light(double sine_of_height, double strength) {
   return kSolarConstant * strength * std::pow(0.7, std::pow(air_mass, 0.678));
 }
 
-class RaySunExposure final : public SunExposure {
- public:
-  RaySunExposure(std::unique_ptr<RayScene> scene, std::vector<SunSector> sectors)
-      : scene_(std::move(scene)), sectors_(std::move(sectors)) {}
-
-  Sum at(const glm::vec3& position, const glm::vec3& normal) const override {
-    const float length = glm::length(normal);
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    if (!(length > 0)) return {kNone, kNone};
-    const glm::vec3 up = normal / length;
-    Sum sum;
-    for (const SunSector& sector : sectors_) {
-      const double cosine = glm::dot(glm::dvec3(up), sector.direction);
-      if (cosine <= 0 || scene_->is_blocked(position, up, glm::vec3(sector.direction))) continue;
-      sum.hours += sector.hours;
-      sum.energy += sector.energy * cosine;
-    }
-    return sum;
-  }
-
- private:
-  std::unique_ptr<RayScene> scene_;
-  std::vector<SunSector> sectors_;
-};
-
 }  // namespace
 
-std::vector<SunSector> sun_sectors(double latitude, const SunPeriod& period) {
+std::vector<SkySector> sun_sectors(double latitude, const SunPeriod& period) {
   const double sine = std::sin(glm::radians(latitude)), cosine = std::cos(glm::radians(latitude));
   constexpr double kHoursPerStep = 24.0 / kStepsPerDay;
   // The directions in a sector are added up with their energies, so the energy on a plane that
@@ -96,18 +67,11 @@ std::vector<SunSector> sun_sectors(double latitude, const SunPeriod& period) {
       sums.hours += kHoursPerStep;
     }
   }
-  std::vector<SunSector> result;
+  std::vector<SkySector> result;
   result.reserve(sectors.size());
   for (const auto& [place, sums] : sectors)
     result.push_back({glm::normalize(sums.energy), sums.hours, glm::length(sums.energy)});
   return result;
-}
-
-Result<std::unique_ptr<SunExposure>> SunExposure::make(std::shared_ptr<const Geometry> geometry,
-                                                       std::vector<SunSector> sectors,
-                                                       Progress& progress) {
-  auto scene = STRATA_TRY(RayScene::make(std::move(geometry), progress));
-  return std::make_unique<RaySunExposure>(std::move(scene), std::move(sectors));
 }
 
 }  // namespace strata::mesh
