@@ -61,10 +61,12 @@ struct Expression {
     focal_max,      //
     focal_variety,  // the number of different values
     hot_spot,       // the z-score of a number at the texels around
-    watershed,      // the number of the basin of a number, of basins at least `number` deep
-    run_off,        // water that passes, from the rain on each place
-    valley,         // the depth of lines of low values with the width `number`
-    ridge,          // the height of lines of high values, likewise
+    // How likely chance makes such a score; the second part is the number of permutations.
+    hot_spot_chance,
+    watershed,  // the number of the basin of a number, of basins at least `number` deep
+    run_off,    // water that passes, from the rain on each place
+    valley,     // the depth of lines of low values with the width `number`
+    ridge,      // the height of lines of high values, likewise
     // 1 where the first part is above the second, in a connected piece with a value above `number`.
     hysteresis,
     // Clean-ups of a number, or of a condition, whose result is 1 or unknown.

@@ -619,6 +619,7 @@ class Parser {
       refuse("Expected ',' and " + std::string(named.limit_name == "area" ? "an " : "a ") +
              std::string(named.limit_name));
     if (named.limit != Limit::none && take(",")) function.number = limit(named);
+    if (op == Op::hot_spot_chance) function.parts.push_back(permutations());
     expect(")");
     function.position = position(at, name_end);
     return cleans_condition ? make(Op::known, at, std::move(function)) : function;
@@ -649,6 +650,20 @@ class Parser {
     const double number = token_.number;
     advance();
     refuse_unit(std::string(named.limit_unit));
+    return number;
+  }
+
+  // Parses a comma and a number of permutations, or nothing.
+  Expression permutations() {
+    Expression number;
+    number.number = kDefaultPermutations;
+    if (!take(",")) return number;
+    if (token_.kind != Token::Kind::number || token_.number < kMinPermutations ||
+        token_.number > kMaxPermutations || token_.number != std::floor(token_.number))
+      return refuse("Write the number of permutations as a whole number from " +
+                    std::to_string(kMinPermutations) + " to " + std::to_string(kMaxPermutations));
+    number.number = token_.number;
+    advance();
     return number;
   }
 

@@ -35,9 +35,10 @@ enum class Names { layers, columns };
 //   distance(condition[, limit]), within(condition, limit), nearest(number[, limit]): along the
 //   surface, only in computed layers; a layer in place of the condition means valid(layer);
 //   within(c, d) is the same as distance(c, d) is not null
-//   focal_mean, focal_min, focal_max, focal_variety, hot_spot of (number, radius), valley and ridge
-//   of (number, width), interpolated and interpolation_error of (number, range), watershed(number,
-//   height), run_off(number): likewise
+//   focal_mean, focal_min, focal_max, focal_variety, hot_spot of (number, radius),
+//   hot_spot_chance(number, radius[, permutations]), valley and ridge of (number, width),
+//   interpolated and interpolation_error of (number, range), watershed(number, height),
+//   run_off(number): likewise
 //   hysteresis(number, low, high): likewise, a condition
 //   sieve and fill_holes of (number or condition, area), majority(number or condition, radius),
 //   opening and closing of (condition, width): likewise; a condition if the argument is one

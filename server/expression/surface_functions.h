@@ -14,6 +14,8 @@ namespace strata::query {
 // Functions that depend on the surface around a texel. They are computed for all texels at once,
 // before the formula is evaluated, and only for computed layers.
 constexpr std::size_t kMaxSurfaceFunctions = 8;  // in one formula
+// Of hot_spot_chance.
+constexpr int kMinPermutations = 99, kDefaultPermutations = 999, kMaxPermutations = 9999;
 
 struct NamedSurfaceFunction {
   Expression::Op op;
@@ -37,6 +39,7 @@ inline constexpr std::array kSurfaceFunctions{
     NamedSurfaceFunction{.op = Expression::Op::focal_max, .name = "focal_max"},
     NamedSurfaceFunction{.op = Expression::Op::focal_variety, .name = "focal_variety"},
     NamedSurfaceFunction{.op = Expression::Op::hot_spot, .name = "hot_spot"},
+    NamedSurfaceFunction{.op = Expression::Op::hot_spot_chance, .name = "hot_spot_chance"},
     NamedSurfaceFunction{.op = Expression::Op::valley, .name = "valley", .limit_name = "width"},
     NamedSurfaceFunction{.op = Expression::Op::ridge, .name = "ridge", .limit_name = "width"},
     NamedSurfaceFunction{.op = Expression::Op::watershed,

@@ -55,6 +55,13 @@ bool is_condition_in_text(const Expression& function) {
                                            function.parts.at(0).is_condition());
 }
 
+std::string hot_spot_chance(const Expression& function) {
+  Expression radius;
+  radius.number = function.number;
+  return "hot_spot_chance(" + text_of(function.parts.at(0)) + ", " + text_of(radius) + ", " +
+         text_of(function.parts.at(1)) + ")";
+}
+
 std::string joined(const char* word, const Expression& expression) {
   // `a in (1)` has the same text as `a = 1`.
   if (expression.parts.size() == 1) return text_of(expression.parts[0]);
@@ -96,6 +103,7 @@ std::string text_of(const Expression& expression) {
     case Op::focal_max: return with_limit("focal_max", expression);
     case Op::focal_variety: return with_limit("focal_variety", expression);
     case Op::hot_spot: return with_limit("hot_spot", expression);
+    case Op::hot_spot_chance: return hot_spot_chance(expression);
     case Op::watershed: return with_limit("watershed", expression);
     case Op::run_off: return call("run_off", expression);
     case Op::valley: return with_limit("valley", expression);

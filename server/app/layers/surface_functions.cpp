@@ -164,6 +164,10 @@ class SurfaceFunctionValues {
     if (function.op == Op::hysteresis)
       return query::hysteresis_values(values, type, {function.parts[1].number, function.number},
                                       *map_, *graph_, progress);
+    if (function.op == Op::hot_spot_chance)
+      return query::hot_spot_chances(values, type, function.number,
+                                     static_cast<int>(function.parts[1].number), *map_, *graph_,
+                                     kField, progress, threads);
     return query::focal_values(focal_of(function.op), values, type, function.number, *map_, *graph_,
                                kField, progress, threads);
   }

@@ -7,12 +7,14 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/progress.h"
 #include "mesh/parallel.h"
 #include "mesh/texels/texel_graph.h"
 #include "query/regions/parallel_values.h"
+#include "query/regions/place_permutations.h"
 #include "query/regions/row_runs.h"
 #include "query/regions/texel_discs.h"
 #include "query/regions/value_areas.h"
@@ -233,17 +235,10 @@ Result<SurfaceValues> part_values(const Input& input, double radius, const mesh:
       share);
 }
 
-// The values of places with a size, from which the score of a hot spot follows.
-struct Places {
-  double mean = 0, deviation = 0;
-  double number = 0;  // of places with a value
-  double area = 0;    // of one place
-};
-
 class HotSpotDiscs {
  public:
   HotSpotDiscs(const Input& input, const RowParts<MeanPart>& parts, const mesh::TexelGraph& graph,
-               double radius, const Places& places)
+               double radius, const EqualPlaces& places)
       : discs_(input, parts, graph, radius), places_(places) {}
 
   std::optional<float> at(std::uint32_t texel) {
@@ -259,15 +254,16 @@ class HotSpotDiscs {
 
  private:
   PartDiscs<MeanPart> discs_;
-  const Places& places_;
+  const EqualPlaces& places_;
 };
 
-Result<Places> measure_places(const Input& input, const RowParts<MeanPart>& parts, double radius,
-                              const mesh::TexelGraph& graph, Progress& progress, int threads) {
-  const auto means = STRATA_TRY(
+Result<EqualPlaces> measure_places(const Input& input, const RowParts<MeanPart>& parts,
+                                   double radius, const mesh::TexelGraph& graph, Progress& progress,
+                                   int threads) {
+  auto means = STRATA_TRY(
       compute_discs(input, progress, threads,
                     [&] { return PartDiscs<MeanPart>(input, parts, graph, radius); }, {0, 0.15}));
-  const auto areas =
+  auto areas =
       STRATA_TRY(part_values<AreaPart>(input, radius, graph, progress, threads, {0.15, 0.3}));
   double area = 0, weighted = 0, squares = 0, place_areas = 0;
   const auto for_each_place = [&](auto visit) {
@@ -281,7 +277,7 @@ Result<Places> measure_places(const Input& input, const RowParts<MeanPart>& part
     weighted += of_texel * mean;
     place_areas += of_texel * of_place;
   });
-  if (!(area > 0)) return Places{};
+  if (!(area > 0)) return EqualPlaces{};
   const double mean = weighted / area;
   for_each_place([&](double of_texel, double value, double) {
     squares += of_texel * (value - mean) * (value - mean);
@@ -289,20 +285,88 @@ Result<Places> measure_places(const Input& input, const RowParts<MeanPart>& part
   const double of_place = place_areas / area, deviation = std::sqrt(squares / area);
   // Of equal values, only the mean is rounded.
   constexpr double kRounding = 1e-6;
-  return Places{mean, deviation > kRounding * std::abs(mean) ? deviation : 0, area / of_place,
-                of_place};
+  return EqualPlaces{std::move(means),
+                     std::move(areas),
+                     mean,
+                     deviation > kRounding * std::abs(mean) ? deviation : 0,
+                     area / of_place,
+                     of_place,
+                     &input.values.valid};
 }
+
+constexpr double kPlaceRadius = 0.25;  // of the radius of a hot spot
 
 Result<SurfaceValues> hot_spot_values(const Input& input, double radius,
                                       const mesh::TexelGraph& graph, Progress& progress,
                                       int threads) {
-  constexpr double kPlaceRadius = 0.25;  // of the radius
   const RowParts<MeanPart> parts(input, threads);
-  const Places places =
+  const EqualPlaces places =
       STRATA_TRY(measure_places(input, parts, kPlaceRadius * radius, graph, progress, threads));
   return compute_discs(input, progress, threads,
                        [&] { return HotSpotDiscs(input, parts, graph, radius, places); }, {0.3, 1});
 }
+
+// Returns the means of discs, and keeps their areas.
+class MeasuredDiscs {
+ public:
+  MeasuredDiscs(const Input& input, const RowParts<MeanPart>& parts, const mesh::TexelGraph& graph,
+                double radius, std::vector<float>& areas)
+      : discs_(input, parts, graph, radius), areas_(areas) {}
+
+  std::optional<float> at(std::uint32_t texel) {
+    const MeanPart part = discs_.part_at(texel);
+    areas_[texel] = static_cast<float>(part.area);
+    return part.result();
+  }
+
+ private:
+  PartDiscs<MeanPart> discs_;
+  std::vector<float>& areas_;
+};
+
+// What a permutation test compares at a texel: the part of its disc outside its own place.
+struct Neighbors {
+  double sum = 0, number = 0, own = 0;
+};
+
+class NeighborsAtTexels {
+ public:
+  NeighborsAtTexels(const EqualPlaces& places, const SurfaceValues& means,
+                    const std::vector<float>& areas)
+      : places_(places), means_(means), areas_(areas) {}
+
+  Neighbors at(std::uint32_t texel) const {
+    // A place can be empty, and smaller than others at an edge.
+    const double size = number(places_.areas, texel) / places_.area,
+                 within = double{areas_[texel]} / places_.area,
+                 own = size > 0 ? number(places_.means, texel) : places_.mean;
+    return {within * number(means_, texel) - size * own, within - size, own};
+  }
+
+ private:
+  static double number(const SurfaceValues& values, std::uint32_t texel) {
+    return double{std::bit_cast<float>(values.bits[texel])};
+  }
+
+  const EqualPlaces& places_;
+  const SurfaceValues& means_;
+  const std::vector<float>& areas_;
+};
+
+class ChanceAtTexels {
+ public:
+  ChanceAtTexels(const NeighborsAtTexels& neighbors, const PlacePermutations& permutations)
+      : neighbors_(neighbors), permutations_(permutations) {}
+
+  std::optional<float> at(std::uint32_t texel) const {
+    const Neighbors found = neighbors_.at(texel);
+    return permutations_.chance(found.sum, found.number, found.own);
+  }
+
+ private:
+  const NeighborsAtTexels& neighbors_;
+  const PlacePermutations& permutations_;
+};
 
 std::vector<float> decoded(const SurfaceValues& values, ValueType type) {
   std::vector<float> numbers(values.bits.size());
@@ -346,6 +410,31 @@ Result<SurfaceValues> focal_values(Focal statistic, const SurfaceValues& values,
   }
   return compute_discs(input, progress, threads,
                        [&] { return VarietyDiscs(input, graph, radius); });
+}
+
+Result<SurfaceValues> hot_spot_chances(const SurfaceValues& values, ValueType type, double radius,
+                                       int permutations, const mesh::SurfaceMap& map,
+                                       const mesh::TexelGraph& graph, const std::string& field,
+                                       Progress& progress, int threads) {
+  if (map.surface_texels == 0) return values;
+  const double largest = max_focal_radius(map);
+  if (!(radius <= largest && largest > 0)) return radius_too_large(map, field);
+  const RowRuns rows(values, map, graph, progress, threads);
+  const Input input{values, rows, map, decoded(values, type)};
+  const RowParts<MeanPart> parts(input, threads);
+  const EqualPlaces places =
+      STRATA_TRY(measure_places(input, parts, kPlaceRadius * radius, graph, progress, threads));
+  std::vector<float> areas(values.bits.size());
+  const SurfaceValues means = STRATA_TRY(
+      compute_discs(input, progress, threads,
+                    [&] { return MeasuredDiscs(input, parts, graph, radius, areas); }, {0.3, 0.8}));
+  const NeighborsAtTexels neighbors(places, means, areas);
+  double most = 0;
+  for (std::uint32_t texel = 0; texel < areas.size(); ++texel)
+    if (means.of(texel).valid) most = std::max(most, neighbors.at(texel).number);
+  const PlacePermutations shuffled(places, map.area, most, permutations);
+  return compute_values(means.valid, progress, threads, {"Comparing permutations", 0.8, 1},
+                        [&] { return ChanceAtTexels(neighbors, shuffled); });
 }
 
 }  // namespace strata::query

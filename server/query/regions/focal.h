@@ -56,4 +56,17 @@ Result<SurfaceValues> focal_values(Focal statistic, const SurfaceValues& values,
                                    const mesh::TexelGraph& graph, const std::string& field,
                                    Progress& progress, int threads = 1);
 
+// Returns how likely chance alone makes the mean of a neighborhood at least as unusual as it is:
+// the pseudo p-value of a conditional permutation test of Gi* with the places of Focal::hot_spot
+// (query/regions/place_permutations), on both sides, as f32. It is 1 where all values are equal.
+// Where each value is independent of others farther than a place away, about 5 % of the results are
+// below 0.05. Unlike the score, it assumes no normal distribution.
+//
+// Takes as long as the score, and about 1 ns for each texel and permutation. Needs about 40 bytes
+// of memory per texel. Otherwise like focal_values.
+Result<SurfaceValues> hot_spot_chances(const SurfaceValues& values, ValueType type, double radius,
+                                       int permutations, const mesh::SurfaceMap& map,
+                                       const mesh::TexelGraph& graph, const std::string& field,
+                                       Progress& progress, int threads = 1);
+
 }  // namespace strata::query

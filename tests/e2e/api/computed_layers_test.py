@@ -316,6 +316,10 @@ def test_neighborhoods(server):
     compute_along(server, "Spots", "hot_spot(bands, 0.5)")
     low, high = value(server, "spots", 20, 50)["value"], value(server, "spots", 80, 40)["value"]
     assert low < -0.5 and high > 0.5, (low, high)
+    compute_along(server, "Chances", "hot_spot_chance(bands, 0.5, 199)")
+    chance = value(server, "chances", 20, 50)["value"]
+    near(chance * 200, round(chance * 200), 0.001)
+    assert 0.005 <= chance <= 1, chance
     job = compute(server, "Wide", "focal_mean(bands, 50)", expect=202)
     done = server.wait_for_job(job["id"])
     assert done["state"] == "failed" and "40 texels" in done["problem"]["detail"], done

@@ -435,7 +435,7 @@ EXPRESSION = {
     "condition": b'0.3 <= depth * 2 and not (valid("2020 survey") or salt-2 <> 4e-1)',
     "number": b"if(a > 1 or true, max(a, -b, .5), abs(a - b / 3)) + min(a, 2)",
     "names": b'A == "and" AND b_1-c != 2',
-    "focal": b"focal_mean(a - b, 2.5) > focal_max(a, 1e3) or focal_variety(a.b, 5) = focal_min(3, 0) or hot_spot(a, 2) > 1.96 and watershed(a, 0.5) = run_off(b)",
+    "focal": b"focal_mean(a - b, 2.5) > focal_max(a, 1e3) or focal_variety(a.b, 5) = focal_min(3, 0) or hot_spot(a, 2) > 1.96 and hot_spot_chance(a, 2, 999) < 0.05 and watershed(a, 0.5) = run_off(b)",
     "lines": b"hysteresis(valley(a - b, 2.5) + ridge(a.b, 1e3), -0.1, 0.3) or not hysteresis(a, 0, 0)",
     "cleanups": b"majority(sieve(a, 4) + fill_holes(b, 1e3), 2) > 1 or closing(opening(sieve(a > 1, 3), 2), 5) and fill_holes(b is null, 4)",
     "interpolated": b"interpolated(round(a * 10), 80) + 2 * interpolation_error(a.b, 2.5) > focal_mean(c, 1)",

@@ -54,6 +54,17 @@ TEST(SurfaceFunctions, of_neighborhoods_have_a_number_and_a_radius) {
   }
 }
 
+TEST(SurfaceFunctions, of_chance_have_a_radius_and_permutations) {
+  const Expression chance = number("hot_spot_chance(wet - dry, 5, 199)");
+  EXPECT_EQ(chance.op, Op::hot_spot_chance);
+  EXPECT_TRUE(chance.is_surface_function());
+  EXPECT_EQ(chance.number, 5);
+  ASSERT_EQ(chance.parts.size(), 2u);
+  EXPECT_EQ(chance.parts[0], number("wet - dry"));
+  EXPECT_EQ(chance.parts[1].number, 199);
+  EXPECT_EQ(number("hot_spot_chance(wet, 5)").parts[1].number, kDefaultPermutations);
+}
+
 TEST(SurfaceFunctions, of_basins_have_a_height_and_of_water_only_the_rain) {
   const Expression basins = number("watershed(wet, 0.5)");
   EXPECT_EQ(basins.op, Op::watershed);
@@ -177,6 +188,10 @@ TEST(SurfaceFunctions, are_refused_with_the_reason_and_the_place) {
            {"watershed(wet)", kSyntax, 13, 0, "a height"},
            {"run_off(wet, 5)", kSyntax, 11},
            {"run_off(wet > 1)", kExpectsNumber, 8},
+           {"hot_spot_chance(wet)", kSyntax, 19, 0, "a distance"},
+           {"hot_spot_chance(wet, 5, 98)", kSyntax, 24, 2, "from 99 to 9999"},
+           {"hot_spot_chance(wet, 5, 10000)", kSyntax, 24, 5, "from 99 to 9999"},
+           {"hot_spot_chance(wet, 5, 99.5)", kSyntax, 24, 4, "whole number"},
            {"valley(wet)", kSyntax, 10, 0, "a width"},
            {"ridge(wet > 1, 2)", kExpectsNumber, 6},
            {"hysteresis(wet, 1, 2)", kExpectsNumber, 0},

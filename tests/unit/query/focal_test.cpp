@@ -395,6 +395,151 @@ TEST(HotSpots, are_0_where_no_place_stands_out) {
   }
 }
 
+SurfaceValues chances_of(const Surface& surface, const SurfaceValues& values, double radius,
+                         int permutations = 999, int threads = 2) {
+  Progress progress;
+  auto chances = hot_spot_chances(values, ValueType::f32, radius, permutations, surface.map,
+                                  surface.graph, "e", progress, threads);
+  EXPECT_TRUE(chances);
+  return std::move(*chances);
+}
+
+TEST(HotSpotChances, find_planted_clusters_and_little_else) {
+  const Surface surface = plane(512);
+  const double radius = 0.06;
+  const glm::dvec2 hot(0.3, 0.6), cold(0.7, 0.35);
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(0, 1);
+  const auto values = put(surface, [&](std::uint32_t texel) {
+    const glm::dvec2 at = on_plane(surface, texel);
+    const float planted = glm::distance(at, hot) < radius    ? 0.5f
+                          : glm::distance(at, cold) < radius ? -0.5f
+                                                             : 0;
+    return std::optional(10 + noise(random) + planted);
+  });
+  const auto chances = chances_of(surface, values, radius);
+  double elsewhere = 0, flagged = 0;
+  test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+    const glm::dvec2 at = on_plane(surface, texel);
+    const double chance = double{*number_at(chances, texel)};
+    const double to_planted = std::min(glm::distance(at, hot), glm::distance(at, cold));
+    if (to_planted < radius / 2) {
+      EXPECT_NEAR(chance, 0.001, 1e-6) << at.x << ' ' << at.y;  // 1 / (999 + 1)
+    }
+    if (to_planted < 2 * radius) return;
+    elsewhere += 1;
+    flagged += chance < 0.01 ? 1 : 0;
+  });
+  EXPECT_LT(flagged / elsewhere, 0.03);  // 0.01 of independent places
+}
+
+TEST(HotSpotChances, of_noise_are_evenly_distributed) {
+  const Surface surface = plane(512);
+  for (const bool is_skewed : {false, true}) {
+    double count = 0, sum = 0, below_5 = 0, below_20 = 0;
+    for (const unsigned seed : {1u, 2u, 3u}) {
+      std::mt19937 random(seed);
+      std::normal_distribution<float> normal(0, 1);
+      std::exponential_distribution<float> skewed(1);
+      const auto values = put(surface, [&](std::uint32_t) {
+        return std::optional(is_skewed ? skewed(random) : normal(random));
+      });
+      const auto chances = chances_of(surface, values, 0.05);
+      test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+        const double chance = double{*number_at(chances, texel)};
+        count += 1;
+        sum += chance;
+        below_5 += chance < 0.05 ? 1 : 0;
+        below_20 += chance < 0.2 ? 1 : 0;
+      });
+    }
+    EXPECT_NEAR(sum / count, 0.5, 0.04) << is_skewed;
+    EXPECT_NEAR(below_5 / count, 0.05, 0.02) << is_skewed;
+    EXPECT_NEAR(below_20 / count, 0.2, 0.05) << is_skewed;
+  }
+}
+
+TEST(HotSpotChances, agree_with_the_score_of_normal_values) {
+  const Surface surface = plane(512);
+  std::mt19937 random(7);
+  std::normal_distribution<float> noise(0, 1);
+  const auto values = put(surface, [&](std::uint32_t) { return std::optional(noise(random)); });
+  const auto chances = chances_of(surface, values, 0.05, 9999);
+  const auto scores = compute(Focal::hot_spot, surface, values, 0.05);
+  ASSERT_TRUE(scores);
+  double off = 0, count = 0;
+  test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+    const double score = std::abs(double{*number_at(*scores, texel)});
+    const double right = std::erfc(score / std::numbers::sqrt2);
+    off += std::pow(double{*number_at(chances, texel)} - right, 2);
+    count += 1;
+  });
+  // The test leaves out the place itself.
+  EXPECT_LT(std::sqrt(off / count), 0.12);
+}
+
+TEST(HotSpotChances, are_1_where_nothing_can_be_shuffled) {
+  const Surface sheet = test::cut_sheet();
+  const auto same = put(sheet, [](std::uint32_t) { return std::optional(3.0f); });
+  const auto one = put(sheet, [&](std::uint32_t texel) {
+    const glm::ivec2 at = test::sheet_place(sheet, texel);
+    return at == glm::ivec2(50, 50) ? std::optional(3.0f) : std::nullopt;
+  });
+  for (const auto& [values, known] :
+       {std::pair(same, kSheetWidth * kSheetHeight), std::pair(one, 317)}) {
+    const auto chances = chances_of(sheet, values, 10, 99);
+    int count = 0;
+    test::for_each_surface_texel(sheet.map, [&](std::uint32_t texel) {
+      const auto chance = number_at(chances, texel);
+      if (!chance) return;
+      ++count;
+      ASSERT_EQ(*chance, 1);
+    });
+    EXPECT_EQ(count, known);
+  }
+}
+
+TEST(HotSpotChances, are_the_same_each_time_and_with_other_charts) {
+  const auto value_at = [](glm::dvec2 at) {
+    return static_cast<float>(std::sin(67 * at.x) * std::cos(73 * at.y));
+  };
+  std::vector<std::map<std::pair<int, int>, std::pair<double, int>>> found;
+  for (const test::Cuts& cuts : {test::Cuts{1, 1, 0, 1}, test::Cuts{3, 3}}) {
+    const Surface surface = plane(512, cuts);
+    const auto values = put(surface, [&](std::uint32_t texel) {
+      return std::optional(value_at(on_plane(surface, texel)));
+    });
+    const auto chances = chances_of(surface, values, 0.06, 999, 1);
+    EXPECT_EQ(chances.bits, chances_of(surface, values, 0.06, 999, 3).bits);
+    auto& means = found.emplace_back();  // of squares on the plane
+    test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+      const glm::dvec2 at = on_plane(surface, texel);
+      auto& [sum, count] = means[{int(at.x * 20), int(at.y * 20)}];
+      sum += double{*number_at(chances, texel)};
+      ++count;
+    });
+  }
+  for (const auto& [square, first] : found[0]) {
+    const auto& [sum, count] = found[1].at(square);
+    EXPECT_NEAR(first.first / first.second, sum / count, 0.1);
+  }
+}
+
+TEST(HotSpotChances, refuse_a_radius_of_more_than_40_texels_and_can_be_cancelled) {
+  const Surface sheet = test::cut_sheet();
+  const auto values = put(sheet, [](std::uint32_t texel) { return std::optional(float(texel)); });
+  Progress progress;
+  const auto refused =
+      hot_spot_chances(values, ValueType::f32, 40.1, 99, sheet.map, sheet.graph, "e", progress);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().field, "e");
+  progress.cancel();
+  EXPECT_EQ(hot_spot_chances(values, ValueType::f32, 5, 99, sheet.map, sheet.graph, "e", progress)
+                .error()
+                .code,
+            ErrorCode::cancelled);
+}
+
 TEST(Focal, does_not_depend_on_threads_and_can_be_cancelled) {
   const Surface sheet = test::cut_sheet({{96}, {64}});
   const Grid grid = noisy_grid();

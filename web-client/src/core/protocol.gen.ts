@@ -2854,7 +2854,7 @@ export interface LayerCreate {
   /** For layers of records without `table`, the columns of the new table. Default: one text column, Name. */
   columns?: ColumnCreate[];
   compute?: ShapeRecipe;
-  /** For a computed layer, a formula or a condition. A condition results in the value 1 where it is true and no value elsewhere. The expression can use layers, their records, the surface (x, y, z, nx, ny, nz, height, slope, curvature, area), and functions along the surface (distance, within, nearest, focal_mean, focal_min, focal_max, focal_variety, hot_spot, valley, ridge, hysteresis, watershed, run_off, sieve, fill_holes, majority, opening, closing, interpolated, interpolation_error). */
+  /** For a computed layer, a formula or a condition. A condition results in the value 1 where it is true and no value elsewhere. The expression can use layers, their records, the surface (x, y, z, nx, ny, nz, height, slope, curvature, area), and functions along the surface (distance, within, nearest, focal_mean, focal_min, focal_max, focal_variety, hot_spot, hot_spot_chance, valley, ridge, hysteresis, watershed, run_off, sieve, fill_holes, majority, opening, closing, interpolated, interpolation_error). */
   expression?: string;
   /** Only with `expression`. Default: manual. */
   recompute?: Recompute;

@@ -293,6 +293,7 @@ export const laterTexts = {
       ["focal_max(", "größter Wert im Umkreis: focal_max(Ebene, 20)"],
       ["focal_variety(", "Anzahl verschiedener Werte im Umkreis: focal_variety(Ebene, 20)"],
       ["hot_spot(", "wie ungewöhnlich der Mittelwert im Umkreis ist: hot_spot(Ebene, 20)"],
+      ["hot_spot_chance(", "wie wahrscheinlich der Zufall ihn ergibt: hot_spot_chance(Ebene, 20)"],
       ["watershed(", "Nummern der Becken, etwa der Steine zwischen Fugen: watershed(Ebene, Höhe)"],
       ["run_off(", "Wasser, das an der Oberfläche abläuft: run_off(Regen in l/m²)"],
       ["valley(", "Tiefe von Rissen und Rillen einer Breite: valley(Ebene, 2)"],

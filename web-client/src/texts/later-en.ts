@@ -295,6 +295,7 @@ export const laterTexts = {
       ["focal_max(", "largest value within a radius: focal_max(layer, 20)"],
       ["focal_variety(", "number of different values within a radius: focal_variety(layer, 20)"],
       ["hot_spot(", "how unusual the mean within a radius is: hot_spot(layer, 20)"],
+      ["hot_spot_chance(", "how likely chance makes such a mean: hot_spot_chance(layer, 20)"],
       ["watershed(", "numbers of basins, such as stones between joints: watershed(layer, height)"],
       ["run_off(", "water that runs down the surface: run_off(rain in l/m²)"],
       ["valley(", "depth of cracks and grooves of a width: valley(layer, 2)"],

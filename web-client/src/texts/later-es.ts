@@ -292,6 +292,7 @@ export const laterTexts = {
       ["focal_max(", "el valor mayor en un radio: focal_max(capa, 20)"],
       ["focal_variety(", "cantidad de valores distintos en un radio: focal_variety(capa, 20)"],
       ["hot_spot(", "lo inusual que es la media en un radio: hot_spot(capa, 20)"],
+      ["hot_spot_chance(", "probabilidad de esa media por azar: hot_spot_chance(capa, 20)"],
       [
         "watershed(",
         "números de las cuencas, como las piedras entre juntas: watershed(capa, altura)",

@@ -2647,9 +2647,9 @@ struct LayerCreate {
   // For a computed layer, a formula or a condition. A condition results in the value 1 where it is
   // true and no value elsewhere. The expression can use layers, their records, the surface (x, y,
   // z, nx, ny, nz, height, slope, curvature, area), and functions along the surface (distance,
-  // within, nearest, focal_mean, focal_min, focal_max, focal_variety, hot_spot, valley, ridge,
-  // hysteresis, watershed, run_off, sieve, fill_holes, majority, opening, closing, interpolated,
-  // interpolation_error).
+  // within, nearest, focal_mean, focal_min, focal_max, focal_variety, hot_spot, hot_spot_chance,
+  // valley, ridge, hysteresis, watershed, run_off, sieve, fill_holes, majority, opening, closing,
+  // interpolated, interpolation_error).
   std::optional<std::string> expression;
   std::optional<Recompute> recompute;  // Only with `expression`. Default: manual.
   bool operator==(const LayerCreate&) const = default;
