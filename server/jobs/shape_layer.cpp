@@ -83,6 +83,7 @@ class Measure {
       case ShapeKind::sun_energy: return sun();
       case ShapeKind::driving_rain: return rain();
       case ShapeKind::vertex_property: return property();
+      case ShapeKind::lightness: break;
     }
     return fail(ErrorCode::internal, "Unknown kind",
                 "The server does not support this kind of layer.");
@@ -426,14 +427,19 @@ Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
   const bool rounds = recipe.kind != ShapeKind::vertex_property;
   auto tiles = STRATA_TRY(paint(*geometry, value, type, resolution, rounds, kMeasured, progress));
 
+  ShapeRecipe used = recipe;
+  if (used.kind == ShapeKind::vertex_property) used.source = measure.source();
+  return described(std::move(tiles), used, model, type, measure.other_model());
+}
+
+ShapeLayer described(TileMap tiles, const ShapeRecipe& recipe, const Model& model, ValueType type,
+                     const std::string& other) {
   ShapeLayer layer;
   layer.tiles = std::move(tiles);
   layer.unit = unit_of(recipe, model);
-  ShapeRecipe used = recipe;
-  if (used.kind == ShapeKind::vertex_property) used.source = measure.source();
-  layer.description = description_of(used, model, measure.other_model());
+  layer.description = description_of(recipe, model, other);
   layer.palette = palette_of(recipe.kind, range_of(layer.tiles, type));
-  layer.recipe = to_json(used);
+  layer.recipe = to_json(recipe);
   return layer;
 }
 

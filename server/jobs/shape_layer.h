@@ -23,7 +23,8 @@ struct ShapeLayer {
 };
 
 // Computes the layer of the recipe on the whole surface of the model, as values of `type` at
-// `resolution`. `recipe` must be the result of `completed`. Reads the other model and source files
+// `resolution`. `recipe` must be the result of `completed`, and not of the kind `lightness`, whose
+// colors a room has. Reads the other model and source files
 // from `store`. Returns the Error `invalid` or `not_found`, with the name of the field, if the
 // other model or the property cannot be used. Also returns an Error for the boundary distance of a
 // closed model, and for values that do not fit the type. Takes long, reports progress and can be
@@ -32,6 +33,10 @@ Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
                                        const std::shared_ptr<const mesh::Geometry>& geometry,
                                        const ShapeRecipe& recipe, ValueType type, int resolution,
                                        Progress& progress);
+
+// Returns the layer with this content, of values of `type`. `other` is as in description_of.
+ShapeLayer described(TileMap tiles, const ShapeRecipe& recipe, const Model& model, ValueType type,
+                     const std::string& other);
 
 // Returns one component (0…2) of the surface normal at each texel, as f32.
 Result<TileMap> paint_normals(const std::shared_ptr<const mesh::Geometry>& geometry, int axis,

@@ -12,7 +12,7 @@
 namespace strata::jobs {
 namespace {
 
-constexpr std::array<std::string_view, 18> kNames{"height",
+constexpr std::array<std::string_view, 19> kNames{"height",
                                                   "slope",
                                                   "azimuth",
                                                   "mean_curvature",
@@ -29,7 +29,8 @@ constexpr std::array<std::string_view, 18> kNames{"height",
                                                   "sun_hours",
                                                   "sun_energy",
                                                   "driving_rain",
-                                                  "vertex_property"};
+                                                  "vertex_property",
+                                                  "lightness"};
 
 constexpr double kEdgesPerRadius = 4;
 // The cylinder then contains about 50 vertices of each mesh. Lague et al. recommend at least 20.
@@ -101,7 +102,8 @@ Result<void> check_members(const ShapeRecipe& r) {
       {r.absolute, kind == ShapeKind::height, "absolute"},
       {!r.model.empty(), takes_model(kind), "model"},
       {!r.property.empty(), kind == ShapeKind::vertex_property, "property"},
-      {!r.source.empty(), kind == ShapeKind::vertex_property, "source"}};
+      {!r.source.empty(), kind == ShapeKind::vertex_property, "source"},
+      {!r.look.empty(), kind == ShapeKind::lightness, "look"}};
   for (const auto& [is_set, takes, member] : members)
     STRATA_TRY(refuse_foreign(is_set, takes, member, kind));
   if (takes_model(kind) && r.model.empty())
@@ -377,6 +379,10 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
     case ShapeKind::driving_rain: return "Rain on the surface" + climate_of(r);
     case ShapeKind::vertex_property:
       return "Property " + r.property + " of the scan's vertices, from " + r.source + ".";
+    case ShapeKind::lightness:
+      return "Lightness (L* of CIELAB) of " +
+             (r.look.empty() ? "the visible colors" : "the surface image " + other) +
+             ": 0 black, 100 white.";
   }
   return {};
 }
@@ -467,6 +473,7 @@ nlohmann::json to_json(const ShapeRecipe& r) {
   if (!r.model.empty()) json["model"] = r.model;
   if (!r.property.empty()) json["property"] = r.property;
   if (!r.source.empty()) json["source"] = r.source;
+  if (!r.look.empty()) json["look"] = r.look;
   return json;
 }
 
@@ -486,14 +493,16 @@ std::string unit_of(const ShapeRecipe& recipe, const Model& model) {
     case ShapeKind::driving_rain: return "l/m²";
     case ShapeKind::significant_change:
     case ShapeKind::ambient_occlusion:
+    case ShapeKind::lightness:
     case ShapeKind::vertex_property: return "";
     default: return unit;
   }
 }
 
 std::string description_of(const ShapeRecipe& recipe, const Model& model,
-                           const std::string& other_model) {
-  return sentence(recipe, model, other_model) + " Computed from the mesh of " +
+                           const std::string& other) {
+  if (recipe.kind == ShapeKind::lightness) return sentence(recipe, model, other);
+  return sentence(recipe, model, other) + " Computed from the mesh of " +
          std::to_string(model.triangles) + " triangles.";
 }
 
@@ -519,6 +528,7 @@ Palette palette_of(ShapeKind kind, const ValueRange& range) {
     case ShapeKind::sun_energy: return sunshine(range.most);
     case ShapeKind::driving_rain: return rainfall(range.most);
     case ShapeKind::vertex_property: return viridis(range.low, range.high);
+    case ShapeKind::lightness: return linear(0, 100, {{0, 0, 0, 255}, {255, 255, 255, 255}});
     case ShapeKind::boundary_distance: return viridis(0, rounded(range.most));
     case ShapeKind::height: break;
   }

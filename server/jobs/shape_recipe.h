@@ -30,7 +30,8 @@ enum class ShapeKind {
   sun_hours,           // of direct sun in a period of the year
   sun_energy,          // of direct sun in a period of the year, in kWh/m²
   driving_rain,        // in l/m²
-  vertex_property
+  vertex_property,
+  lightness  // L* of CIELAB, of the colors of the scan or of a surface image
 };
 std::string_view name(ShapeKind kind);
 std::optional<ShapeKind> parse_shape_kind(std::string_view name);
@@ -63,6 +64,8 @@ struct ShapeRecipe {
   std::string model;  // model distance, changes: id or slug of the other model
   // Vertex property: its name and the source file. Empty: the only source file with this property.
   std::string property, source;
+  // Lightness: the id of the surface image. Empty: what is visible by default.
+  std::string look;
 };
 
 // The days from `from` to `to`, which may be in the next year. Both must be valid.
@@ -80,10 +83,10 @@ Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model, const Mode
 nlohmann::json to_json(const ShapeRecipe& recipe);
 
 // Return the unit of the values ("mm", "1/m²", "°", ""), and a description of the values and of
-// their computation in a few sentences.
+// their computation in a few sentences. `other` is the name of the other model or of the surface
+// image.
 std::string unit_of(const ShapeRecipe& recipe, const Model& model);
-std::string description_of(const ShapeRecipe& recipe, const Model& model,
-                           const std::string& other_model);
+std::string description_of(const ShapeRecipe& recipe, const Model& model, const std::string& other);
 
 // Returns a palette for the kind over the range of the values. `low` and `high` are the 2nd and the
 // 98th percentile of the values, `least` and `most` are the ends of their range. Palettes of signed

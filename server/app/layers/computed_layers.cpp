@@ -1,7 +1,9 @@
 #include "app/layers/computed_layers.h"
+#include "query/sampling/lightness_tiles.h"
 #include "room/room.h"
 #include "room/surface.h"
 #include "store/content/models.h"
+#include "store/content/surface_images.h"
 #include "store/people/personal_views.h"
 
 namespace strata::app {
@@ -21,20 +23,58 @@ Result<std::optional<Model>> other_model(store::Store& store, const jobs::ShapeR
   return std::move(*other);
 }
 
+// Returns the id of the surface image, or an empty text if the recipe names none.
+Result<std::string> image_of(store::Store& store, const jobs::ShapeRecipe& recipe,
+                             const Model& model) {
+  if (recipe.look.empty()) return std::string();
+  const auto image = store.surface_images().find(model.id, recipe.look);
+  if (image) return to_string(image->id);
+  if (image.error().code != ErrorCode::not_found) return tl::unexpected(image.error());
+  return fail(ErrorCode::invalid, "Surface image not found",
+              "The model has no surface image \"" + recipe.look + "\".", "compute.look");
+}
+
+Result<jobs::ShapeLayer> lightness_layer(store::Store& store, room::Room& room,
+                                         const jobs::ShapeRecipe& recipe, const Layer& requested,
+                                         Progress& progress) {
+  progress.report(0, "Reading the colors");
+  const Model model = room.model();
+  std::optional<SurfaceImageId> image;
+  std::string name;
+  if (!recipe.look.empty()) {
+    const auto found = STRATA_TRY(store.surface_images().find(model.id, recipe.look));
+    image = found.id;
+    name = found.name;
+  }
+  const auto map = STRATA_TRY(room.surface().map(requested.resolution));
+  const auto colors = room.surface().colors(requested.resolution, image);
+  if (!colors) {
+    Error problem = colors.error();
+    if (problem.code == ErrorCode::invalid)
+      problem.field = problem.field.empty() ? "compute.kind" : "compute." + problem.field;
+    return tl::unexpected(std::move(problem));
+  }
+  auto tiles = STRATA_TRY(query::lightness_tiles(**colors, *map, requested.type, progress));
+  return jobs::described(std::move(tiles), recipe, model, requested.type, name);
+}
+
 }  // namespace
 
 Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe recipe,
                                        const Model& model, const Roles& roles) {
   const auto other = STRATA_TRY(other_model(store, recipe, roles));
+  recipe.look = STRATA_TRY(image_of(store, recipe, model));
   return jobs::completed(std::move(recipe), model, other ? &*other : nullptr);
 }
 
-Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLayers& layers,
+Result<Layer> add_shape_layer(store::Store& store, room::Room& room, NewLayers& layers,
                               const Layer& requested, const jobs::ShapeRecipe& recipe,
                               bool has_palette, const std::string& user, Progress& progress) {
-  auto computed =
-      STRATA_TRY(jobs::compute_shape_layer(store, room.model(), room.surface().geometry(), recipe,
-                                           requested.type, requested.resolution, progress));
+  auto computed = STRATA_TRY(
+      recipe.kind == jobs::ShapeKind::lightness
+          ? lightness_layer(store, room, recipe, requested, progress)
+          : jobs::compute_shape_layer(store, room.model(), room.surface().geometry(), recipe,
+                                      requested.type, requested.resolution, progress));
   Layer layer = requested;
   layer.origin = LayerOrigin::shape;
   if (layer.unit.empty()) layer.unit = computed.unit;

@@ -20,7 +20,7 @@ Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe re
 
 // Computes a layer from the shape of the model and paints it. Properties in `requested` have
 // precedence over those of the recipe. At first, only `user` can see the layer. Blocks.
-Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLayers& layers,
+Result<Layer> add_shape_layer(store::Store& store, room::Room& room, NewLayers& layers,
                               const Layer& requested, const jobs::ShapeRecipe& recipe,
                               bool has_palette, const std::string& user, Progress& progress);
 

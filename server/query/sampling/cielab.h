@@ -22,4 +22,12 @@ inline glm::vec3 lab_of_light(const glm::vec3& light) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
+// Returns L* of an sRGB color with red in the low byte, 0…100.
+inline float lightness(std::uint32_t color) {
+  const auto light = [&](int shift) {
+    return light_of_srgb(static_cast<std::uint8_t>(color >> shift));
+  };
+  return lab_of_light({light(0), light(8), light(16)}).x;
+}
+
 }  // namespace strata::query

@@ -5,6 +5,7 @@
 #include "domain/layers/mask_texels.h"
 #include "mesh/texels/slot_bits.h"
 #include "query/maps/point_splats.h"
+#include "room/caches/appearance_cache.h"
 #include "room/open/open_surface.h"
 #include "room/pipeline/gpu_problem.h"
 #include "room/pipeline/seen_texels.h"
@@ -95,6 +96,28 @@ Result<std::shared_ptr<const mesh::SurfaceMap>> OpenRoom::SurfacePart::map(int r
 Result<std::shared_ptr<const mesh::TexelGraph>> OpenRoom::SurfacePart::graph(int resolution) {
   const auto map = STRATA_TRY(room_.surface_map(resolution));
   return room_.surface_lookup_->graph(*map);
+}
+
+Result<std::shared_ptr<const query::TexelAppearance>> OpenRoom::SurfacePart::colors(
+    int resolution, std::optional<SurfaceImageId> image_id) {
+  const auto map = STRATA_TRY(room_.surface_map(resolution));
+  SurfaceImageCache& images = room_.surface_image_cache();
+  AppearanceCache::Sources sources;
+  if (image_id) {
+    const auto image = images.find(to_string(*image_id));
+    if (!image)
+      return fail(ErrorCode::invalid, "Surface image not found", "The surface image was deleted.",
+                  "look");
+    sources = {false, {*image}};
+    sources.images.front().opacity = 1;  // only its own colors
+  } else {
+    sources.images = images.all();
+    std::erase_if(sources.images,
+                  [](const SurfaceImage& image) { return !image.visible || image.opacity <= 0; });
+  }
+  return room_.appearance_->colors(
+      *map, std::move(sources),
+      [&](const SurfaceImage& image, int side) { return images.picture(image.id, side); });
 }
 
 std::shared_ptr<const mesh::Geometry> OpenRoom::SurfacePart::geometry() const {

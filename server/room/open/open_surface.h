@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "query/sampling/texel_appearance.h"
 #include "room/open/open_room.h"
 #include "room/surface.h"
 
@@ -15,6 +16,8 @@ class OpenRoom::SurfacePart final : public Surface {
   std::shared_ptr<const mesh::SearchTree> search_tree() override;
   Result<std::shared_ptr<const mesh::SurfaceMap>> map(int resolution) override;
   Result<std::shared_ptr<const mesh::TexelGraph>> graph(int resolution) override;
+  Result<std::shared_ptr<const query::TexelAppearance>> colors(
+      int resolution, std::optional<SurfaceImageId> image) override;
   Result<TileMap> point_splats(const Layer& layer, const std::vector<PlacedValue>& values,
                                double radius, double tolerance) override;
   Result<TileMap> project(const Layer& layer, const glm::dvec3& direction,

@@ -5,34 +5,10 @@
 #include "query/conditions/similar.h"
 #include "room/caches/appearance_cache.h"
 #include "room/open/open_queries.h"
+#include "room/open/open_surface.h"
 #include "room/pipeline/region.h"
 
 namespace strata::room {
-
-Result<AppearanceCache::Texels> OpenRoom::QueriesPart::colors(const Selection::Like& like,
-                                                              const mesh::SurfaceMap& map,
-                                                              const std::string& field) {
-  SurfaceImageCache& images = room_.surface_image_cache();
-  AppearanceCache::Sources sources;
-  if (like.image) {
-    const auto image = images.find(to_string(*like.image));
-    if (!image)
-      return fail(ErrorCode::invalid, "Surface image not found", "The surface image was deleted.",
-                  field + ".like.look");
-    sources = {false, {*image}};
-    sources.images.front().opacity = 1;  // only its own colors are compared
-  } else {
-    sources.images = images.all();
-    std::erase_if(sources.images,
-                  [](const SurfaceImage& image) { return !image.visible || image.opacity <= 0; });
-  }
-  auto colors = room_.appearance_->colors(
-      map, std::move(sources),
-      [&](const SurfaceImage& image, int side) { return images.picture(image.id, side); });
-  if (!colors && colors.error().code == ErrorCode::invalid)
-    colors.error().field = field + ".like.by";
-  return colors;
-}
 
 Result<query::TexelSelection> OpenRoom::QueriesPart::texels_like(const Selection::Like& like, At at,
                                                                  const mesh::SurfaceMap& map,
@@ -46,8 +22,14 @@ Result<query::TexelSelection> OpenRoom::QueriesPart::texels_like(const Selection
   const int threads = mesh::background_threads();
   switch (like.by) {
     case Selection::Like::By::color: {
-      const auto texels = STRATA_TRY(colors(like, map, field));
-      return query::select_similar_colors(map, *graph, *texels, similarity, threads);
+      const auto texels = room_.surface_part_->colors(map.resolution, like.image);
+      if (!texels) {
+        Error problem = texels.error();
+        if (problem.code == ErrorCode::invalid)
+          problem.field = field + ".like." + (problem.field.empty() ? "by" : problem.field);
+        return tl::unexpected(std::move(problem));
+      }
+      return query::select_similar_colors(map, *graph, **texels, similarity, threads);
     }
     case Selection::Like::By::normal: {
       const auto texels = STRATA_TRY(room_.appearance_->normals(map));

@@ -5,6 +5,7 @@ import struct
 
 import pytest
 from support.meshes import bumpy_ball, folded_grid
+from support.pictures import png
 from support.strata_server import wait_for
 
 BALL, SHEET = "/models/ball", "/models/sheet"
@@ -27,6 +28,7 @@ RECIPE_MEMBERS = (
     "model",
     "property",
     "source",
+    "look",
 )
 
 # The wind from the west carries as much rain through a vertical plane as falls on the ground.
@@ -130,6 +132,8 @@ def test_refusals(server):
         (layer(kind="slope", rain_mm=500), 422, "compute.rain_mm"),
         (layer(kind="height", sql="x"), 422, "compute.sql"),
         (layer(kind="vertex_property"), 422, "compute.property"),
+        (layer(kind="lightness", look="nothing"), 422, "compute.look"),
+        (layer(kind="slope", look="nothing"), 422, "compute.look"),
         (
             {"name": "wrong", "kind": "database", "type": "u8", "compute": {"kind": "height"}},
             422,
@@ -146,6 +150,7 @@ def test_refusals(server):
         (layer(kind="model_distance", model="ball"), "compute.model"),
         (layer(kind="change", model="ball"), "compute.model"),
         (layer(kind="vertex_property", property="quality"), "compute.property"),
+        (layer(kind="lightness"), "compute.kind"),  # the scan has no colors
         ({"name": "wrong", "type": "u8", "compute": {"kind": "height", "absolute": True}}, "type"),
     ]:
         job = run(server, BALL + "/layers", body, state="failed")
@@ -397,6 +402,26 @@ def with_quality(scan):
         + b"".join(struct.pack("<3fdB", *v, 2 * v[2], 7) for v in vertices)
         + body[12 * count :]
     )
+
+
+def test_lightness(server):
+    """The left half of the scan is gray, the right half is white. A surface image is red."""
+    scan = folded_grid(color_at=lambda x, y: (119,) * 3 if x < 50 else (255,) * 3)
+    server.import_model(scan, "colored.ply", name="Colored", unit="mm")
+    model = "/models/colored"
+    layer, values = compute(server, model, "lightness", name="Of the scan")
+    assert "visible colors" in layer["description"] and layer["palette"]["max"] == 100, layer
+    assert abs(values["min"] - 50.03) < 0.05 and abs(values["max"] - 100) < 0.05, values
+    picture = png(32, 32, lambda x, y: (255, 0, 0))
+    server.ok(
+        "POST", model + "/looks?name=Red+light", picture, headers={"Content-Type": "image/png"}
+    )
+    layer, values = compute(server, model, "lightness", look="red-light", name="Of the image")
+    assert "Red light" in layer["description"], layer
+    assert max(abs(values[of] - 53.24) for of in ("min", "mean", "max")) < 0.01, values
+    # The image is hidden by default.
+    _, values = compute(server, model, "lightness", name="Once more")
+    assert abs(values["max"] - 100) < 0.05, values
 
 
 def test_vertex_property(server):

@@ -851,6 +851,7 @@ export const texts = {
       change: "Veränderung zwischen Aufnahmen",
       sun: "Sonne",
       rain: "Regen",
+      color: "Farbe",
       file: "Aus der Datei des Scans",
     },
     kinds: {
@@ -918,6 +919,10 @@ export const texts = {
       driving_rain: {
         title: "Schlagregen",
         lead: "Liter Regen pro Quadratmeter, mit dem Wind, der Neigung der Oberfläche und dem Schutz durch das Modell selbst.",
+      },
+      lightness: {
+        title: "Helligkeit",
+        lead: "Von 0 (schwarz) bis 100 (weiß), von den Farben des Scans oder von einem Oberflächenbild. Für Risse und Fugen, die dunkler als der Stein sind, und für Bilder in UV-Licht oder Infrarot.",
       },
       vertex_property: {
         title: "Werte aus der Datei des Scans",
@@ -993,6 +998,8 @@ export const texts = {
     absolute: "Höhe in Koordinaten der Stätte statt über dem tiefsten Punkt verwenden",
     model: "Zur Oberfläche von",
     property: "Eigenschaft",
+    look: "Von",
+    look_visible: "Sichtbare Farben",
     bad_length: "Geben Sie eine Länge größer als 0 ein, in Millimetern.",
     model_missing: "Wählen Sie das andere Modell.",
     property_missing: "Wählen Sie die Eigenschaft.",

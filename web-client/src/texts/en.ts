@@ -814,6 +814,7 @@ export const texts = {
       change: "Change between surveys",
       sun: "Sun",
       rain: "Rain",
+      color: "Color",
       file: "From the scan's file",
     },
     kinds: {
@@ -881,6 +882,10 @@ export const texts = {
       driving_rain: {
         title: "Driving rain",
         lead: "Liters of rain per square meter, with the wind, the inclination of the surface and the shelter of the model itself.",
+      },
+      lightness: {
+        title: "Lightness",
+        lead: "From 0 (black) to 100 (white), of the scan's colors or of a surface image. For cracks and joints that are darker than the stone, and for pictures in UV light or infrared.",
       },
       vertex_property: {
         title: "Values from the scan's file",
@@ -956,6 +961,8 @@ export const texts = {
     absolute: "Use the elevation in site coordinates instead of the height above the lowest point",
     model: "To the surface of",
     property: "Property",
+    look: "Of",
+    look_visible: "The visible colors",
     bad_length: "Enter a length larger than 0, in millimeters.",
     model_missing: "Choose the other model.",
     property_missing: "Choose the property.",

@@ -841,6 +841,7 @@ export const texts = {
       change: "Cambio entre levantamientos",
       sun: "Sol",
       rain: "Lluvia",
+      color: "Color",
       file: "Del archivo del escaneo",
     },
     kinds: {
@@ -908,6 +909,10 @@ export const texts = {
       driving_rain: {
         title: "Lluvia con viento",
         lead: "Litros de lluvia por metro cuadrado, con el viento, la inclinación de la superficie y el abrigo del propio modelo.",
+      },
+      lightness: {
+        title: "Luminosidad",
+        lead: "De 0 (negro) a 100 (blanco), de los colores del escaneo o de una imagen de superficie. Para grietas y juntas más oscuras que la piedra, y para imágenes en luz UV o infrarrojo.",
       },
       vertex_property: {
         title: "Valores del archivo del escaneo",
@@ -983,6 +988,8 @@ export const texts = {
       "Usar la cota en coordenadas del yacimiento en lugar de la altura sobre el punto más bajo",
     model: "A la superficie de",
     property: "Propiedad",
+    look: "De",
+    look_visible: "Colores visibles",
     bad_length: "Introduzca una longitud mayor que 0, en milímetros.",
     model_missing: "Elija el otro modelo.",
     property_missing: "Elija la propiedad.",

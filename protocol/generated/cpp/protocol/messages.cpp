@@ -887,6 +887,7 @@ std::string_view name(ShapeRecipeKind value) {
     case ShapeRecipeKind::sun_energy: return "sun_energy";
     case ShapeRecipeKind::driving_rain: return "driving_rain";
     case ShapeRecipeKind::vertex_property: return "vertex_property";
+    case ShapeRecipeKind::lightness: return "lightness";
   }
   return {};
 }
@@ -911,6 +912,7 @@ void read(const nlohmann::json& json, ShapeRecipeKind& value) {
   if (text == "sun_energy") value = ShapeRecipeKind::sun_energy;
   if (text == "driving_rain") value = ShapeRecipeKind::driving_rain;
   if (text == "vertex_property") value = ShapeRecipeKind::vertex_property;
+  if (text == "lightness") value = ShapeRecipeKind::lightness;
 }
 
 nlohmann::json to_json(const ShapeRecipeKind& value) { return name(value); }
@@ -3350,6 +3352,7 @@ void read(const nlohmann::json& json, ShapeRecipe& value) {
   read_optional_member(json, "model", value.model);
   read_optional_member(json, "property", value.property);
   read_optional_member(json, "source", value.source);
+  read_optional_member(json, "look", value.look);
 }
 
 nlohmann::json to_json(const ShapeRecipe& value) {
@@ -3373,6 +3376,7 @@ nlohmann::json to_json(const ShapeRecipe& value) {
   write_optional_member(json, "model", value.model);
   write_optional_member(json, "property", value.property);
   write_optional_member(json, "source", value.source);
+  write_optional_member(json, "look", value.look);
   return json;
 }
 

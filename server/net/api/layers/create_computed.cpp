@@ -34,6 +34,7 @@ jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& body) {
   recipe.model = body.model.value_or("");
   recipe.property = body.property.value_or("");
   recipe.source = body.source.value_or("");
+  recipe.look = body.look.value_or("");
   return recipe;
 }
 

@@ -4,6 +4,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { pageLocale } from "../../core/locale";
+import type { Look } from "../../core/protocol.gen";
 import { ApiError } from "../../net/api-error";
 import type { Model, VertexPropertyName } from "../../core/types";
 import type { ModelSession } from "../../session/model-session";
@@ -51,9 +52,11 @@ export class StrataShapeFields extends LitElement {
     absolute: false,
     model: "",
     property: "",
+    look: "",
   };
   @state() private _models: Model[] = [];
   @state() private _properties: VertexPropertyName[] = [];
+  @state() private _looks: Look[] = [];
 
   static override styles = [
     sharedStyles,
@@ -99,12 +102,14 @@ export class StrataShapeFields extends LitElement {
   private async load(): Promise<void> {
     const { api, modelId, model } = this.session;
     try {
-      const [models, { properties }] = await Promise.all([
+      const [models, looks, { properties }] = await Promise.all([
         api.all("GET /models", "models"),
+        api.all("GET /models/{model}/looks", "looks", { path: { model: modelId } }),
         api.json("GET /models/{model}/vertex-properties", { path: { model: modelId } }),
       ]);
       this._models = model ? otherModels(models, model) : [];
       this._properties = properties;
+      this._looks = looks;
       const [firstModel, firstProperty] = [this._models[0], properties[0]];
       this.change({
         model: firstModel ? String(firstModel.id) : "",
@@ -151,6 +156,7 @@ export class StrataShapeFields extends LitElement {
           : html`<div class="parameters">
             ${info.takes.includes("model") ? this.modelField() : nothing}
             ${info.takes.includes("property") ? this.propertyField() : nothing}
+            ${info.takes.includes("look") ? this.lookField() : nothing}
             ${kLengths.map((name) => (info.takes.includes(name) ? this.lengthField(name) : nothing))}
             ${kAngles.map((name) => (info.takes.includes(name) ? this.angleField(name) : nothing))}
             ${info.takes.includes("months") ? kEnds.map((end) => this.monthField(end)) : nothing}
@@ -269,6 +275,16 @@ export class StrataShapeFields extends LitElement {
       <span>${words.model}</span>
       <select name="model" @change=${(event: Event) => this.change({ model: (event.target as HTMLSelectElement).value })}>
         ${this._models.map(({ id, name }) => html`<option value=${id} ?selected=${String(id) === this._input.model}>${name}</option>`)}
+      </select>
+    </label>`;
+  }
+
+  private lookField(): TemplateResult {
+    return html`<label class="field">
+      <span>${words.look}</span>
+      <select name="look" @change=${(event: Event) => this.change({ look: (event.target as HTMLSelectElement).value })}>
+        <option value="">${words.look_visible}</option>
+        ${this._looks.map(({ id, name }) => html`<option value=${id} ?selected=${String(id) === this._input.look}>${name}</option>`)}
       </select>
     </label>`;
   }

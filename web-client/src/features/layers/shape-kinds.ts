@@ -24,6 +24,7 @@ export interface ShapeKindInfo {
     | "absolute"
     | "model"
     | "property"
+    | "look"
   )[];
 }
 
@@ -101,6 +102,10 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
     kinds: [{ kind: "driving_rain", ...words.driving_rain, takes: kRainTakes }],
   },
   {
+    title: texts.shape.groups.color,
+    kinds: [{ kind: "lightness", ...words.lightness, takes: ["look"] }],
+  },
+  {
     title: texts.shape.groups.file,
     kinds: [{ kind: "vertex_property", ...words.vertex_property, takes: ["property"] }],
   },
@@ -124,6 +129,7 @@ export interface ShapeInput extends Record<ShapeLength | SunAngle | RainNumber, 
   absolute: boolean;
   model: string;
   property: string; // in the format "source/property"
+  look: string; // id of the surface image, or empty for the visible colors
 }
 
 /** Returns the recipe, or the problem of the input. Omits parameters of other kinds. */
@@ -183,6 +189,7 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
     if (!input.model) return { problem: texts.shape.model_missing, field: "model" };
     recipe.model = input.model;
   }
+  if (takes.includes("look") && input.look) recipe.look = input.look;
   if (takes.includes("property")) {
     // only the name of a property can contain slashes, not the source
     const slash = input.property.indexOf("/");

@@ -31,6 +31,7 @@ const input: ShapeInput = {
   absolute: false,
   model: "",
   property: "",
+  look: "",
 };
 
 describe("a recipe from what was filled in", () => {
@@ -68,6 +69,12 @@ describe("a recipe from what was filled in", () => {
       source: "pot.ply",
       property: "a/b",
     });
+  });
+  it("takes a surface image for the lightness alone", () => {
+    expect(recipeOf({ ...input, look: "4" })).toEqual({ kind: "roughness" });
+    const lightness = { ...input, kind: "lightness" as const };
+    expect(recipeOf(lightness)).toEqual({ kind: "lightness" });
+    expect(recipeOf({ ...lightness, look: "4" })).toEqual({ kind: "lightness", look: "4" });
   });
   it("takes a number of rays for openness alone, within the server's bounds", () => {
     const openness = { ...input, kind: "ambient_occlusion" as const };
@@ -145,7 +152,7 @@ describe("a recipe from what was filled in", () => {
   });
   it("has words for every kind that the server knows", () => {
     const kinds = kShapeGroups.flatMap((group) => group.kinds.map(({ kind }) => kind));
-    expect(new Set(kinds).size).toBe(18);
+    expect(new Set(kinds).size).toBe(19);
     for (const group of kShapeGroups)
       for (const { title, lead } of group.kinds) expect(title && lead).toBeTruthy();
   });
