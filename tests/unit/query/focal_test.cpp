@@ -459,25 +459,6 @@ TEST(HotSpotChances, of_noise_are_evenly_distributed) {
   }
 }
 
-TEST(HotSpotChances, agree_with_the_score_of_normal_values) {
-  const Surface surface = plane(512);
-  std::mt19937 random(7);
-  std::normal_distribution<float> noise(0, 1);
-  const auto values = put(surface, [&](std::uint32_t) { return std::optional(noise(random)); });
-  const auto chances = chances_of(surface, values, 0.05, 9999);
-  const auto scores = compute(Focal::hot_spot, surface, values, 0.05);
-  ASSERT_TRUE(scores);
-  double off = 0, count = 0;
-  test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
-    const double score = std::abs(double{*number_at(*scores, texel)});
-    const double right = std::erfc(score / std::numbers::sqrt2);
-    off += std::pow(double{*number_at(chances, texel)} - right, 2);
-    count += 1;
-  });
-  // The test leaves out the place itself.
-  EXPECT_LT(std::sqrt(off / count), 0.12);
-}
-
 TEST(HotSpotChances, are_1_where_nothing_can_be_shuffled) {
   const Surface sheet = test::cut_sheet();
   const auto same = put(sheet, [](std::uint32_t) { return std::optional(3.0f); });

@@ -123,14 +123,8 @@ describe("a recipe from what was filled in", () => {
       rain_mm_per_hour: 1.5,
     });
     expect(recipeOf({ ...input, ...climate })).toEqual({ kind: "roughness" });
-    for (const wind_shares of [
-      "",
-      "1 2 3",
-      "0 0 0 0 0 0 0 0",
-      "1 1 1 1 1 1 1 -1",
-      "W W W W W W W W",
-    ])
-      expect(recipeOf({ ...rain, wind_shares })).toMatchObject({ field: "wind_shares" });
+    for (const shares of ["", "1 2 3", "0 0 0 0 0 0 0 0", "1 1 1 1 1 1 1 -1", "W W W W W W W W"])
+      expect(recipeOf({ ...rain, wind_shares: shares })).toMatchObject({ field: "wind_shares" });
     expect(recipeOf({ ...rain, wind_speed_m_s: "" })).toMatchObject({ field: "wind_speed_m_s" });
     expect(recipeOf({ ...rain, rain_mm: "0" })).toMatchObject({ field: "rain_mm" });
     expect(recipeOf({ ...rain, rain_mm_per_hour: "0" })).toMatchObject({
