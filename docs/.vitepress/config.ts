@@ -34,6 +34,7 @@ const howTo = {
     "see-the-past",
     "compare-surveys",
     "compare-observers",
+    "rate-damage",
     "use-the-trash",
   ],
   "Show results": ["save-views", "print-figures", "make-tours", "run-a-kiosk", "show-the-demo"],

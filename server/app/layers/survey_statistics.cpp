@@ -119,11 +119,12 @@ bool has_mean(const SurveyLayer& layer) {
 
 void add_value_columns(std::vector<SurveyColumn>& columns, bool with_quantiles) {
   using query::Statistics;
-  static constexpr std::array<std::pair<const char*, double Statistics::*>, 4> kValues = {{
+  static constexpr std::array<std::pair<const char*, double Statistics::*>, 5> kValues = {{
       {"mean", &Statistics::mean},
       {"min", &Statistics::min},
       {"max", &Statistics::max},
       {"std", &Statistics::std},
+      {"root_mean_square", &Statistics::root_mean_square},
   }};
   for (const auto& [name, member] : kValues)
     columns.push_back({name, [member = member](const SurveyLayer& layer) {

@@ -19,6 +19,7 @@ void add_values(nlohmann::json& json, const query::Statistics& statistics) {
     json["max"] = statistics.max;
     json["mean"] = statistics.mean;
     json["std"] = statistics.std;
+    json["root_mean_square"] = statistics.root_mean_square;
   }
   if (statistics.quantiles)
     for (std::size_t i = 0; i < query::kQuantileNames.size(); ++i)

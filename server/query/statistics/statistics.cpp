@@ -121,6 +121,7 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
   out.max = sums.max;
   out.mean = sums.mean();
   out.std = area > 0 ? std::sqrt(sums.squares / area) : 0;
+  out.root_mean_square = std::hypot(out.mean, out.std);
   for (const auto& key : sums.keys) {
     const double of_key = key.area.value();
     const glm::dvec3 centroid =

@@ -31,6 +31,9 @@ struct Statistics {
   std::uint64_t texels = 0;
   double area_m2 = 0;
   double min = 0, max = 0, mean = 0, std = 0;
+  // Of ratings, the mean is the linear damage index and this is the progressive one (Fitzner and
+  // Heinrichs 2002).
+  double root_mean_square = 0;
   struct Bin {
     double from = 0, to = 0;  // the last bin includes `to`
     std::uint64_t texels = 0;

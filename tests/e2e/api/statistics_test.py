@@ -32,6 +32,7 @@ def check(server, model):
         65535,
         0,
     ), statistics
+    assert abs(statistics["root_mean_square"] - 65535) < 1e-6, statistics
 
 
 def read(name):

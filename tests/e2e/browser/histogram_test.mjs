@@ -76,5 +76,49 @@ test("what others paint is counted", async ({ server, page }) => {
   await wait_for(async () => (await mean_of(page)) !== mean, "what others paint to be counted");
 });
 
+test("classes of ratings have damage indices", async ({ server, page }) => {
+  await server.json("POST", `${base}/layers`, {
+    name: "Ratings",
+    type: "u8",
+    palette: {
+      mode: "categorical",
+      min: 0,
+      max: 5,
+      points: [0, 1, 5].map((at) => ({ at, color: "#440154ff", label: `Damage ${at}` })),
+    },
+  });
+  for (const [value, where] of [
+    [0, "true"],
+    [1, "pieces > 3"],
+    [5, "valid(cracks)"],
+  ])
+    await server.json("POST", `${base}/layers/ratings/edits`, {
+      op: "fill",
+      mode: "where",
+      where,
+      value,
+    });
+  const { keys, area_m2, mean, root_mean_square } = await server.json(
+    "GET",
+    `${base}/layers/ratings/statistics`,
+  );
+  const sum = (of) => keys.reduce((all, key) => all + of(key.key) * key.area_m2, 0) / area_m2;
+  const linear = sum((rating) => rating);
+  const progressive = Math.sqrt(sum((rating) => rating ** 2));
+  assert.ok(linear > 0 && progressive > linear, `${linear}, ${progressive}`);
+  assert.ok(Math.abs(mean - linear) < 1e-9, `${mean}, ${linear}`);
+  assert.ok(Math.abs(root_mean_square - progressive) < 1e-9, `${root_mean_square}`);
+
+  await page.keyboard.press("Escape");
+  await page.getByRole("button", { name: w.layers.options("Ratings") }).click();
+  await page.getByRole("menuitem", { name: w.layers.statistics }).click();
+  const shown = page.locator("strata-statistics-dialog dl");
+  await shown.getByText(w.statistics.damage_index.progressive).waitFor();
+  const numbers = await shown.locator("dd").allTextContents();
+  assert.equal(numbers.length, 2);
+  assert.ok(Math.abs(Number(numbers[0]) - linear) < 0.001, numbers[0]);
+  assert.ok(Math.abs(Number(numbers[1]) - progressive) < 0.001, numbers[1]);
+});
+
 test.afterEach(({ server }, info) => attach_log(info, server));
 ends_well();

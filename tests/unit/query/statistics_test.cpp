@@ -206,6 +206,9 @@ TEST(QueryStatistics, they_agree_with_a_plain_sum_over_every_texel) {
     EXPECT_EQ(got.max, high);
     EXPECT_NEAR(got.mean, mean, 1e-9);
     EXPECT_NEAR(got.std, std::sqrt(squares / area), 1e-9);
+    double raw_squares = 0;
+    for (const auto& s : all) raw_squares += s.area * s.value * s.value;
+    EXPECT_NEAR(got.root_mean_square, std::sqrt(raw_squares / area), 1e-9);
 
     ASSERT_EQ(got.histogram.size(), 64u);
     EXPECT_EQ(got.histogram.front().from, low);

@@ -1858,7 +1858,7 @@ export interface Quantiles {
   p95: number;
 }
 
-/** Statistics of a layer in a survey, weighted by surface area. `min`, `max`, `mean` and `std` are absent if the layer is empty, and if each value is a class: in layers of records, and in layers of whole numbers with a categorical palette. */
+/** Statistics of a layer in a survey, weighted by surface area. `min`, `max`, `mean`, `std` and `root_mean_square` are absent if the layer is empty, and if each value is a class: in layers of records, and in layers of whole numbers with a categorical palette. */
 export interface SurveyLayerStatistics {
   /** Id of the layer. */
   layer: number;
@@ -1877,6 +1877,8 @@ export interface SurveyLayerStatistics {
   max?: number;
   mean?: number;
   std?: number;
+  /** Square root of the mean of the squares. For ratings, `mean` is the linear and this the progressive damage index (Fitzner and Heinrichs 2002). */
+  root_mean_square?: number;
   /** Number of connected areas, if requested. In layers of whole numbers, each area has a single value. */
   pieces?: number;
   /** Length of the borders of the valid areas along the surface, if requested. */
@@ -1973,7 +1975,7 @@ export interface KeyStatistics {
   perimeter_m?: number;
 }
 
-/** Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values. */
+/** Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean`, `std` and `root_mean_square` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values. */
 export interface Statistics {
   texels: number;
   area_m2: number;
@@ -1981,6 +1983,8 @@ export interface Statistics {
   max?: number;
   mean?: number;
   std?: number;
+  /** Square root of the mean of the squares. For ratings, `mean` is the linear and this the progressive damage index (Fitzner and Heinrichs 2002). */
+  root_mean_square?: number;
   /** Number of connected areas, if requested. In layers of whole numbers, each area has a single value. */
   pieces?: number;
   /** Length of the borders of the valid areas along the surface, if requested. It includes open edges of the mesh, but not seams of the atlas. */

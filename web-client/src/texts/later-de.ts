@@ -577,6 +577,12 @@ export const laterTexts = {
     min: "Minimum",
     max: "Maximum",
     std: "Standardabweichung",
+    root_mean_square: "Quadratisches Mittel",
+    damage_index: {
+      caption: "Wenn die Klassen Bewertungen sind",
+      linear: "Linearer Schadensindex",
+      progressive: "Progressiver Schadensindex",
+    },
     refresh: "Aktualisieren",
     spread: "Fläche nach Wert",
     range_from: "Farben von",

@@ -571,6 +571,12 @@ export const laterTexts = {
     min: "Minimum",
     max: "Maximum",
     std: "Standard deviation",
+    root_mean_square: "Root mean square",
+    damage_index: {
+      caption: "If the classes are ratings",
+      linear: "Linear damage index",
+      progressive: "Progressive damage index",
+    },
     refresh: "Refresh",
     spread: "Area by value",
     range_from: "Colors from",

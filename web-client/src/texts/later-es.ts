@@ -575,6 +575,12 @@ export const laterTexts = {
     min: "Mínimo",
     max: "Máximo",
     std: "Desviación estándar",
+    root_mean_square: "Media cuadrática",
+    damage_index: {
+      caption: "Si las clases son valoraciones",
+      linear: "Índice de daño lineal",
+      progressive: "Índice de daño progresivo",
+    },
     refresh: "Actualizar",
     spread: "Área por valor",
     range_from: "Colores desde",

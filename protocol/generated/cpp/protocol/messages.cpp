@@ -2689,6 +2689,7 @@ void read(const nlohmann::json& json, Statistics& value) {
   read_optional_member(json, "max", value.max);
   read_optional_member(json, "mean", value.mean);
   read_optional_member(json, "std", value.std);
+  read_optional_member(json, "root_mean_square", value.root_mean_square);
   read_optional_member(json, "pieces", value.pieces);
   read_optional_member(json, "perimeter_m", value.perimeter_m);
   read_optional_member(json, "quantiles", value.quantiles);
@@ -2704,6 +2705,7 @@ nlohmann::json to_json(const Statistics& value) {
   write_optional_member(json, "max", value.max);
   write_optional_member(json, "mean", value.mean);
   write_optional_member(json, "std", value.std);
+  write_optional_member(json, "root_mean_square", value.root_mean_square);
   write_optional_member(json, "pieces", value.pieces);
   write_optional_member(json, "perimeter_m", value.perimeter_m);
   write_optional_member(json, "quantiles", value.quantiles);

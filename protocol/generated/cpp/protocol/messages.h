@@ -1930,7 +1930,7 @@ nlohmann::json to_json(const KeyStatistics& value);
 template <>
 inline constexpr Schema kSchemaOf<KeyStatistics> = Schema::KeyStatistics;
 
-// Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean` and `std` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values.
+// Statistics of a layer, weighted by surface area. Statistics of the valid texels on the surface. `min`, `max`, `mean`, `std` and `root_mean_square` are absent if the layer is empty. `keys` is empty for floating-point values, and for more than 4096 different values.
 struct Statistics {
   std::int64_t texels = 0;
   double area_m2 = 0;
@@ -1938,6 +1938,9 @@ struct Statistics {
   std::optional<double> max;
   std::optional<double> mean;
   std::optional<double> std;
+  // Square root of the mean of the squares. For ratings, `mean` is the linear and this the
+  // progressive damage index (Fitzner and Heinrichs 2002).
+  std::optional<double> root_mean_square;
   // Number of connected areas, if requested. In layers of whole numbers, each area has a single
   // value.
   std::optional<std::int64_t> pieces;

@@ -222,6 +222,7 @@ export class StrataStatisticsDialog extends LitElement {
           line(describeValue(this.layer, key.key, this.session.tables), key.area_m2),
         ),
         line(words.sum, statistics.area_m2),
+        ...this.damageIndices(statistics).map(([name, value]) => [name, formatNumber(value, 4)]),
       ];
     const { unit } = this.layer;
     return [
@@ -253,10 +254,25 @@ export class StrataStatisticsDialog extends LitElement {
       [words.min, statistics.min],
       [words.max, statistics.max],
       [words.std, statistics.std],
+      [words.root_mean_square, statistics.root_mean_square],
     ];
     return all.flatMap(([name, value]): [string, number][] =>
       value === null || value === undefined ? [] : [[name, value]],
     );
+  }
+
+  /** Returns the damage indices, if the values can be ratings: keys of records are not. */
+  private damageIndices({
+    mean,
+    root_mean_square: rootMeanSquare,
+  }: Statistics): [string, number][] {
+    const words = texts.statistics.damage_index;
+    return this.layer.kind === "database" || mean === undefined || rootMeanSquare === undefined
+      ? []
+      : [
+          [words.linear, mean],
+          [words.progressive, rootMeanSquare],
+        ];
   }
 
   private keys(statistics: Statistics): TemplateResult {
@@ -276,7 +292,16 @@ export class StrataStatisticsDialog extends LitElement {
           <div class="track"><i ${styled({ width: `${(key.area_m2 / largest) * 100}%`, background })}></i></div>
         </li>`;
       })}
-    </ul>`;
+    </ul>
+      ${this.ratings(this.damageIndices(statistics))}`;
+  }
+
+  private ratings(indices: [string, number][]): TemplateResult | typeof nothing {
+    if (indices.length === 0) return nothing;
+    return html`<div>
+      <p class="caption">${texts.statistics.damage_index.caption}</p>
+      ${figures(indices)}
+    </div>`;
   }
 
   private spread(statistics: Statistics): TemplateResult {
@@ -285,9 +310,7 @@ export class StrataStatisticsDialog extends LitElement {
     const bins = statistics.histogram;
     const largest = Math.max(...bins.map((bin) => bin.area_m2), Number.MIN_VALUE);
     const palette = this._tried ?? this.layer.palette;
-    return html`<dl>
-        ${this.measures(statistics).map(([name, value]) => html`<div><dt>${name}</dt><dd>${formatNumber(value, 4)}${unit}</dd></div>`)}
-      </dl>
+    return html`${figures(this.measures(statistics), unit)}
       ${
         bins.length > 1
           ? html`<div>
@@ -362,3 +385,6 @@ export class StrataStatisticsDialog extends LitElement {
 /** Sorts by area, with the largest first. */
 const sorted = (statistics: Statistics): KeyStatistics[] =>
   [...(statistics.keys ?? [])].sort((a, b) => b.area_m2 - a.area_m2);
+
+const figures = (named: [string, number][], unit = ""): TemplateResult =>
+  html`<dl>${named.map(([name, value]) => html`<div><dt>${name}</dt><dd>${formatNumber(value, 4)}${unit}</dd></div>`)}</dl>`;
