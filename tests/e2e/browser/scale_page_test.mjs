@@ -209,15 +209,21 @@ test("decide later: what the card named is kept, marked, and asked again", async
   await asked(desk);
 });
 
-test("yes: it is confirmed, upside down as chosen", async () => {
+test("yes: it is confirmed, upside down as chosen, with the direction of north", async () => {
   await choose(desk, "−Y");
+  const north = asks(desk).getByLabel(words.scale.north);
+  await north.fill("361");
+  await asks(desk).getByRole("button", { name: words.scale.yes }).click();
+  await asks(desk).getByText(words.shape.sun.north.wrong).waitFor();
+  await north.fill("-12.5");
+  await shot(desk, "north");
   await asks(desk).getByRole("button", { name: words.scale.yes }).click();
   await wait_for(
     async () => (await model_of("bowl with unit")).scale_verified,
     "the size to be confirmed",
   );
   model = await model_of("bowl with unit");
-  assert.deepEqual([model.unit, model.up], ["mm", "-y"]);
+  assert.deepEqual([model.unit, model.up, model.north], ["mm", "-y", "-12.5"]);
   await wait_for(async () => !/not confirmed/.test(await bar(desk)), "the scale bar to be sure");
 });
 

@@ -60,6 +60,7 @@ export class StrataModelDetails extends LitElement {
       [words.area, formatArea(model.area_m2)],
       [words.triangles, formatCount(model.triangles)],
       [words.up, upName(model.up)],
+      [words.north, model.north && `${model.north}°`],
       [words.smallest, detail ? formatLength(detail.detailM) : ""],
       [words.crs, model.crs],
       [words.inventory_number, model.inventory_number],

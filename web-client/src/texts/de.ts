@@ -403,6 +403,7 @@ export const texts = {
       area: "Oberfläche",
       triangles: "Dreiecke",
       up: "Oben",
+      north: "Norden",
       crs: "Koordinatensystem",
       inventory_number: "Inventarnummer",
       owner: "Eigentum",

@@ -374,6 +374,7 @@ export const texts = {
       area: "Surface",
       triangles: "Triangles",
       up: "Up",
+      north: "North",
       crs: "Coordinate system",
       inventory_number: "Inventory number",
       owner: "Owner",

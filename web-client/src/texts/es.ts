@@ -396,6 +396,7 @@ export const texts = {
       area: "Superficie",
       triangles: "Triángulos",
       up: "Eje vertical",
+      north: "Norte",
       crs: "Sistema de coordenadas",
       inventory_number: "Número de inventario",
       owner: "Propietario",

@@ -525,6 +525,10 @@ export const laterTexts = {
     twice: "Für diese Sprache gibt es bereits einen Namen.",
   },
   scale: {
+    north: "Norden",
+    north_unknown: "nicht bekannt",
+    north_lead:
+      "Im Uhrzeigersinn von der Blickrichtung der Vorderansicht nach Norden, von oben gesehen, in Grad. Für Nordpfeile, Sonne und Regen.",
     title: (size) => `Ist dieses Objekt ${size} groß?`,
     lead: "Pinselbreiten, Flächen und Maßstabsleisten hängen davon ab. Das Bild und seine Maßstabsleiste zeigen Ihre Wahl.",
     unit_unknown: "Die Datei nennt keine Einheit.",

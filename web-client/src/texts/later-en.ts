@@ -518,6 +518,10 @@ export const laterTexts = {
     twice: "This language already has a name.",
   },
   scale: {
+    north: "North",
+    north_unknown: "not known",
+    north_lead:
+      "Clockwise from the view of the front to north, seen from above, in degrees. For north arrows, the sun and the rain.",
     title: (size: string) => `Is this object ${size}?`,
     lead: "Brush widths, areas and scale bars depend on the size. The picture and its scale bar show your choice.",
     unit_unknown: "The file does not specify a unit.",

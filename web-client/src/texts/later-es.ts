@@ -522,6 +522,10 @@ export const laterTexts = {
     twice: "Este idioma ya tiene un nombre.",
   },
   scale: {
+    north: "Norte",
+    north_unknown: "no se conoce",
+    north_lead:
+      "En el sentido de las agujas del reloj, desde la dirección de la vista frontal hasta el norte, visto desde arriba, en grados. Para flechas de norte, sol y lluvia.",
     title: (size) => `¿Mide este objeto ${size}?`,
     lead: "De ello dependen los anchos del pincel, las áreas y las escalas gráficas. La imagen y su escala gráfica muestran lo que elija.",
     unit_unknown: "El archivo no indica la unidad.",

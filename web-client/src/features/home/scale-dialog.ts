@@ -1,9 +1,10 @@
-// <strata-scale-dialog>: asks whether the object's size is right, and corrects the unit and the up
-// direction. Painted values do not change. The dialog is next to the model, which previews the
+// <strata-scale-dialog>: asks whether the object's size is right, and corrects the unit, the up
+// direction and the direction of north. Painted values do not change. The dialog is next to the model, which previews the
 // choice.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
+import { readNumber, typedNumber } from "../../core/locale";
 import { ApiError } from "../../net/api-error";
 import { kUpAxes, upName } from "../../math/camera";
 import { formatSize, likelyScale, metresPer } from "../../domain/measure";
@@ -13,6 +14,7 @@ import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
+import { numberInput } from "../../ui/number-input";
 import { radioGroup } from "../../ui/radio-group";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
@@ -23,6 +25,8 @@ export class StrataScaleDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private _unit: Unit = "m";
   @state() private _up: Model["up"] = "z";
+  @state() private _north = ""; // degrees as typed; empty if it is not known
+  @state() private _northWrong = false;
   @state() private _busy = false;
   @query("strata-dialog") private _dialog!: StrataDialog;
 
@@ -32,6 +36,14 @@ export class StrataScaleDialog extends LitElement {
       .question {
         display: grid;
         gap: var(--space-1);
+      }
+      .degrees {
+        display: flex;
+        align-items: center;
+        gap: var(--space-2);
+      }
+      .degrees input {
+        width: 10em;
       }
       .segments {
         display: flex;
@@ -80,7 +92,15 @@ export class StrataScaleDialog extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    if (this.session.model) this.take(likelyScale(this.session.model));
+    const { model } = this.session;
+    if (!model) return;
+    this.take(likelyScale(model));
+    this.takeNorth(model);
+  }
+
+  private takeNorth({ north }: Model): void {
+    this._north = Number.isFinite(parseFloat(north)) ? typedNumber(Number(north)) : "";
+    this._northWrong = false;
   }
 
   private take({ unit, up }: Pick<Model, "unit" | "up">): void {
@@ -128,6 +148,24 @@ export class StrataScaleDialog extends LitElement {
         })}
         ${asked ? html`<p class="hint" data-reason="up">${upReason(asked)}</p>` : nothing}
       </div>
+      <label class="question">
+        <span class="caption">${words.north}</span>
+        <span class="degrees">
+          ${numberInput({
+            name: "north",
+            value: this._north,
+            placeholder: words.north_unknown,
+            min: -kFullTurn,
+            max: kFullTurn,
+            wrong: this._northWrong,
+            toldAt: "north-wrong",
+            typed: (text) => (this._north = text),
+          })}
+          °
+        </span>
+        <small>${words.north_lead}</small>
+        ${this._northWrong ? html`<span class="error" role="alert" id="north-wrong">${texts.shape.sun.north.wrong}</span>` : nothing}
+      </label>
       ${model.scale_verified ? nothing : html`<p class="hint">${words.until_then(words[model.unit], upName(model.up))}</p>`}
       <button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => void this.confirm()}>${words.yes}</button>
     </strata-dialog>`;
@@ -135,16 +173,27 @@ export class StrataScaleDialog extends LitElement {
 
   private async confirm(): Promise<void> {
     const { session } = this;
+    const north = this._north.trim() === "" ? "" : readNumber(this._north);
+    this._northWrong = north !== "" && !(Math.abs(north) <= kFullTurn);
+    if (this._northWrong) return;
     this._busy = true;
     try {
-      await session.changeModel({ unit: this._unit, up: this._up, scale_verified: true });
+      await session.changeModel({
+        unit: this._unit,
+        up: this._up,
+        north: String(north),
+        scale_verified: true,
+      });
       notices.show("success", texts.scale.saved);
       this._dialog.close();
     } catch (error) {
       if (error instanceof ApiError && error.status === 412) {
         await session.reloadModel().catch((again: unknown) => notices.error(again));
         notices.show("problem", texts.scale.changed);
-        if (session.model) this.take(session.model);
+        if (session.model) {
+          this.take(session.model);
+          this.takeNorth(session.model);
+        }
       } else {
         notices.error(error);
       }
@@ -159,6 +208,7 @@ export class StrataScaleDialog extends LitElement {
   }
 }
 
+const kFullTurn = 360; // degrees
 const kSure = 0.6; // below this confidence the texts present the unit as one guess among several
 
 function unitReason({
