@@ -85,12 +85,29 @@ def expressions(side, up):
         ("Numbers", f"focal_max(numbers, {near:.4g})"),
         ("Classes", f"focal_variety(classes, {near:.4g})"),
         ("Numbers", f"hot_spot(numbers, {near:.4g})"),
+        ("Numbers", f"hot_spot_chance(numbers, {near:.4g}, 199)"),
         ("Relief", f"valley(relief, {thin:.4g})"),
         ("Relief", f"hysteresis(valley(relief, {thin:.4g}), {thin / 20:.4g}, {thin / 6:.4g})"),
         ("Numbers", "watershed(numbers, 0.4)"),
         ("Relief", f"run_off(max(0, {'-' if up.startswith('-') else ''}{UP_NORMAL[up[-1]]}))"),
         ("Readings", f"interpolated(readings, {side / 3:.4g})"),
         ("Readings", f"interpolation_error(readings, {side / 3:.4g})"),
+    ]
+
+
+def shapes(side, mm):
+    """Returns [(words, recipe)], for layers from the shape."""
+    rain = {
+        "wind_shares": [10, 8, 6, 8, 14, 28, 18, 8],
+        "wind_speed_m_s": 4.5,
+        "rain_mm": 760,
+        "north_deg": 0,
+    }
+    return [
+        ("ambient occlusion", {"kind": "ambient_occlusion"}),
+        ("mean curvature", {"kind": "mean_curvature", "radius_mm": side * mm * 0.01}),
+        ("energy of the sun", {"kind": "sun_energy", "latitude_deg": 40, "north_deg": 0}),
+        ("driving rain", {"kind": "driving_rain", **rain}),
     ]
 
 
@@ -167,6 +184,9 @@ def draw(server, folder, given, resolution):
     for number, (name, expression) in enumerate(expressions(side, up)):
         slug, seconds = sheet.add_layer(f"After {number}", expression=expression)
         sheet.add_row(before[name], sheet.picture(slug), expression, seconds)
+    for words, recipe in shapes(side, mm):
+        slug, seconds = sheet.add_layer(words, compute=recipe)
+        sheet.add_row(before["Relief"], sheet.picture(slug), words, seconds)
     for words, body in cleanups(side, mm):
         slug, _ = sheet.add_layer(words, type="u8", expression="classes")
         seconds = sheet.clean_up(slug, body)
