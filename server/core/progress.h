@@ -54,7 +54,7 @@ class Progress {
 
   void cancel() {
     std::lock_guard lock(mutex_);
-    cancelled_ = true;
+    if (cancelled_.exchange(true)) return;
     for (const auto* watcher : watchers_) watcher->stop_();
   }
   // Tests override it to cancel at a chosen place.

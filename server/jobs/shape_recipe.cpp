@@ -172,7 +172,7 @@ Result<void> complete_rain(ShapeRecipe& recipe, const Model& model) {
   if ((shares.size() != 8 && shares.size() != 16) ||
       !std::ranges::all_of(shares, [](double share) { return share >= 0 && share <= 1e6; }) ||
       std::ranges::all_of(shares, [](double share) { return share == 0; }))
-    return fail(ErrorCode::invalid, "Wind rose missing",
+    return fail(ErrorCode::invalid, "Wind rose not usable",
                 "Enter how much of the rain falls with wind from each of 8 or 16 directions, "
                 "clockwise from north. No number can be negative, and one must be larger than 0.",
                 "compute.wind_shares");

@@ -36,10 +36,11 @@ class Surface {
   virtual Result<std::shared_ptr<const mesh::SurfaceMap>> map(int resolution) = 0;
   // Returns the connections between the texels of the map of a resolution.
   virtual Result<std::shared_ptr<const mesh::TexelGraph>> graph(int resolution) = 0;
-  // Returns the color of each texel of the map of a resolution (query/sampling/texel_appearance.h):
-  // the colors of one surface image without its opacity, or without `image`, those of the scan with
-  // the images that are visible by default. Returns an `invalid` error without a field if there are
-  // no colors, and at `look` for an image that does not exist.
+  // Returns the color of each texel of the map of a resolution, after up to several seconds
+  // (query/sampling/texel_appearance.h): the colors of one surface image without its opacity, or
+  // without `image`, those of the scan with the images that are visible by default. Returns an
+  // `invalid` error without a field if there are no colors, and at `look` for an image that does
+  // not exist.
   virtual Result<std::shared_ptr<const std::vector<std::uint32_t>>> colors(
       int resolution, std::optional<SurfaceImageId> image) = 0;
   // The next two functions paint maps and measurements (query/maps) for an ImportEdit with `over`.

@@ -55,9 +55,12 @@ class Hand {
     this.browser = browser;
   }
 
-  async key(key) {
+  press_key() {
     ++this.keys;
     this.seconds += kKey_s;
+  }
+  async key(key) {
+    this.press_key();
     await this.page.keyboard.press(key);
   }
   async click(locator) {
@@ -192,6 +195,7 @@ async function by_strokes(hand, seen) {
   await hand.key("Shift+L");
   await hand.wait(() => hand.browser.rested());
   await hand.draw(seen.ring(kBeside_px, 32), kBeside_px);
+  hand.press_key();
   await hand.page.keyboard.down("Alt");
   await hand.draw(seen.ring(-kBeside_px, 32), kBeside_px);
   await hand.page.keyboard.up("Alt");
@@ -252,7 +256,7 @@ async function import_scan() {
 
 /** Plants the stain around a place, and returns the condition for its true extent. */
 async function plant(center, size) {
-  const [x, y, z] = center.map((c) => `(${"xyz"[center.indexOf(c)]} - ${c})`);
+  const [x, y, z] = center.map((c, i) => `(${"xyz"[i]} - ${c})`);
   const k = 9 / size;
   const wave = ["x", "y", "z"].map((axis, i) => `sin(${k * (1 + 0.37 * i)} * ${axis})`).join(" + ");
   const inside = `sqrt(${x} ^ 2 + ${y} ^ 2 + ${z} ^ 2) + ${0.06 * size} * (${wave}) < ${size}`;

@@ -23,13 +23,10 @@ Result<std::optional<Model>> other_model(store::Store& store, const jobs::ShapeR
   return std::move(*other);
 }
 
-// Returns the id of the surface image, or an empty text if the recipe names none.
-Result<std::string> image_of(store::Store& store, const jobs::ShapeRecipe& recipe,
-                             const Model& model) {
-  if (recipe.look.empty()) return std::string();
-  const auto image = store.surface_images().find(model.id, recipe.look);
-  if (image) return to_string(image->id);
-  if (image.error().code != ErrorCode::not_found) return tl::unexpected(image.error());
+Result<SurfaceImage> image_of(store::Store& store, const jobs::ShapeRecipe& recipe,
+                              const Model& model) {
+  auto image = store.surface_images().find(model.id, recipe.look);
+  if (image || image.error().code != ErrorCode::not_found) return image;
   return fail(ErrorCode::invalid, "Surface image not found",
               "The model has no surface image \"" + recipe.look + "\".", "compute.look");
 }
@@ -42,7 +39,7 @@ Result<jobs::ShapeLayer> lightness_layer(store::Store& store, room::Room& room,
   std::optional<SurfaceImageId> image;
   std::string name;
   if (!recipe.look.empty()) {
-    const auto found = STRATA_TRY(store.surface_images().find(model.id, recipe.look));
+    const auto found = STRATA_TRY(image_of(store, recipe, model));
     image = found.id;
     name = found.name;
   }
@@ -54,6 +51,7 @@ Result<jobs::ShapeLayer> lightness_layer(store::Store& store, room::Room& room,
       problem.field = problem.field.empty() ? "compute.kind" : "compute." + problem.field;
     return tl::unexpected(std::move(problem));
   }
+  if (progress.cancelled()) return cancelled_problem();
   auto tiles = STRATA_TRY(query::lightness_tiles(**colors, *map, requested.type, progress));
   return jobs::described(std::move(tiles), recipe, model, requested.type, name);
 }
@@ -63,8 +61,12 @@ Result<jobs::ShapeLayer> lightness_layer(store::Store& store, room::Room& room,
 Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe recipe,
                                        const Model& model, const Roles& roles) {
   const auto other = STRATA_TRY(other_model(store, recipe, roles));
-  recipe.look = STRATA_TRY(image_of(store, recipe, model));
-  return jobs::completed(std::move(recipe), model, other ? &*other : nullptr);
+  auto complete = STRATA_TRY(jobs::completed(std::move(recipe), model, other ? &*other : nullptr));
+  if (!complete.look.empty()) {
+    const auto image = STRATA_TRY(image_of(store, complete, model));
+    complete.look = to_string(image.id);
+  }
+  return complete;
 }
 
 Result<Layer> add_shape_layer(store::Store& store, room::Room& room, NewLayers& layers,

@@ -11,7 +11,8 @@
 // The memory of operations on the regions of a layer, reserved before they begin.
 namespace strata::app {
 
-// Distances along the surface need about 1 KiB for each texel within two steps of a seam.
+// Distances along the surface need about 1 KiB for each texel within two steps of a seam. For each
+// texel at a seam, there are about three such texels.
 constexpr std::uint64_t kBytesPerLinkedTexel = 3 * 1024;
 // Reserves the memory for distances along the surface near its seams.
 Result<MemoryLedger::Share> reserve_distances(const Services& services,

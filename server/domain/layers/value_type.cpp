@@ -72,8 +72,9 @@ Result<std::uint32_t> encode_value(ValueType type, double value) {
                     "). Send a value without a fraction.",
                 "value");
   switch (type) {
-    case ValueType::f32: return std::bit_cast<std::uint32_t>(static_cast<float>(value));
-    case ValueType::f16: return glm::packHalf1x16(static_cast<float>(value));
+    // Adding 0 turns -0 into 0, because classes are compared by their bits.
+    case ValueType::f32: return std::bit_cast<std::uint32_t>(static_cast<float>(value) + 0.0f);
+    case ValueType::f16: return glm::packHalf1x16(static_cast<float>(value) + 0.0f);
     case ValueType::i8: return static_cast<std::uint8_t>(static_cast<std::int8_t>(value));
     case ValueType::i16: return static_cast<std::uint16_t>(static_cast<std::int16_t>(value));
     case ValueType::i32: return static_cast<std::uint32_t>(static_cast<std::int32_t>(value));

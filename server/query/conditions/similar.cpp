@@ -63,7 +63,7 @@ class Colors {
   static constexpr bool kAverages = true;
   Colors(std::span<const std::uint32_t> colors, double tolerance)
       : colors_(colors), squared_(static_cast<float>(tolerance * tolerance)) {}
-  bool has(std::uint32_t texel) const { return colors_[texel] >> 24 >= 128; }
+  bool has(std::uint32_t texel) const { return has_color(colors_[texel]); }
   glm::dvec3 at(std::uint32_t texel) const {
     const std::uint32_t color = colors_[texel];
     const auto light = [&](int shift) {

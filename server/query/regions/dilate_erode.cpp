@@ -1,6 +1,5 @@
 #include "query/regions/dilate_erode.h"
 
-#include <bit>
 #include <cmath>
 
 #include "core/progress.h"
@@ -61,11 +60,9 @@ Result<TexelSelection> smooth(const TexelSelection& set, double width, const mes
 }
 
 std::uint64_t bytes_to_dilate(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph) {
-  std::uint64_t linked = 0;
-  for (const std::uint64_t bits : graph.has_links)
-    linked += static_cast<std::uint64_t>(std::popcount(bits));
   const std::uint64_t slots = map.block_of_slot.size();
-  return slots * (64 * kBytesPerTexel + kBytesPerSlot) + linked * kBytesPerLinkedTexel;
+  return slots * (64 * kBytesPerTexel + kBytesPerSlot) +
+         graph.linked_texels() * kBytesPerLinkedTexel;
 }
 
 }  // namespace strata::query

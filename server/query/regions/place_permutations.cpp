@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 #include <unordered_set>
+#include <utility>
 
 namespace strata::query {
 namespace {
@@ -55,45 +56,89 @@ class TexelsByArea {
 
 PlacePermutations::PlacePermutations(const EqualPlaces& places, std::span<const float> areas,
                                      double neighbors, int permutations)
-    : mean_(places.mean),
-      number_(std::floor(places.number)),
-      permutations_(static_cast<std::size_t>(permutations)) {
+    : number_(std::floor(places.number)), permutations_(static_cast<std::size_t>(permutations)) {
   if (!(places.deviation > 0) || number_ < 2) return;
+  const std::vector<float> values = values_of_places(places, areas);
+  draw(values, static_cast<std::size_t>(std::min(number_, std::ceil(neighbors) + 2)));
+}
+
+std::vector<float> PlacePermutations::values_of_places(const EqualPlaces& places,
+                                                       std::span<const float> areas) {
   const TexelsByArea texels(*places.valid, areas);
-  const double longest = std::min(number_, std::ceil(neighbors) + 1);
-  sums_.resize((static_cast<std::size_t>(longest) + 1) * permutations_);
+  std::vector<float> values;
+  double sum = 0;
+  for (double place = 0; place < number_; ++place) {
+    const std::uint32_t texel = texels.at((place + 0.5) / number_ * texels.sum());
+    values.push_back(std::bit_cast<float>(places.means.bits[texel]));
+    sum += double{values.back()};
+  }
+  mean_ = sum / number_;
+  for (std::uint32_t place = 0; place < values.size(); ++place) {
+    values[place] -= static_cast<float>(mean_);
+    by_value_.emplace_back(values[place], place);
+  }
+  std::ranges::sort(by_value_);
+  return values;
+}
+
+void PlacePermutations::draw(const std::vector<float>& values, std::size_t longest) {
+  sums_.resize((longest + 1) * permutations_);
+  drawn_.resize(values.size());
   std::mt19937_64 random(kSeed);
   const auto below_1 = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   std::unordered_set<std::uint32_t> drawn;
-  for (std::size_t permutation = 0; permutation < permutations_; ++permutation) {
-    // The places of one permutation divide the surface into equal parts.
-    const double offset = below_1();
+  for (std::uint32_t permutation = 0; permutation < permutations_; ++permutation) {
     double sum = 0;
     drawn.clear();
-    for (std::size_t count = 1; count <= static_cast<std::size_t>(longest); ++count) {
+    for (std::uint32_t count = 1; count <= longest; ++count) {
       std::uint32_t place = 0;
       do {
         place = static_cast<std::uint32_t>(below_1() * number_);
       } while (!drawn.insert(place).second);
-      const std::uint32_t texel = texels.at((place + offset) / number_ * texels.sum());
-      sum += double{std::bit_cast<float>(places.means.bits[texel])} - mean_;
+      drawn_[place].push_back({permutation, count});
+      sum += double{values[place]};
       sums_[count * permutations_ + permutation] = static_cast<float>(sum);
     }
   }
 }
 
+std::pair<float, std::uint32_t> PlacePermutations::place_with(double value) const {
+  const auto wanted = static_cast<float>(value - mean_);
+  const auto above = std::ranges::lower_bound(by_value_, std::pair(wanted, std::uint32_t{0}));
+  if (above == by_value_.begin()) return *above;
+  const auto below = std::prev(above);
+  return above == by_value_.end() || wanted - below->first < above->first - wanted ? *below
+                                                                                   : *above;
+}
+
 float PlacePermutations::chance(double sum, double neighbors, double own) const {
   if (sums_.empty() || !(neighbors > 0) || neighbors + 1 >= number_) return 1;
-  const double mean_of_others = mean_ + (mean_ - own) / (number_ - 1);
+  // The other places have another mean than all places.
+  const auto [own_value, own_place] = place_with(own);
+  const auto shift = static_cast<float>(neighbors * double{own_value} / (number_ - 1));
   // Equal sums differ by their rounding.
-  const auto off = static_cast<float>((1 - 1e-5) * std::abs(sum - neighbors * mean_of_others));
+  const auto off =
+      static_cast<float>((1 - 1e-5) * std::abs(sum - neighbors * mean_ + double{shift}));
   const auto whole = static_cast<std::size_t>(neighbors);
   const auto fraction = static_cast<float>(neighbors - static_cast<double>(whole));
+  const auto is_as_far = [&](float fewer, float more) {
+    return std::abs(fewer + fraction * (more - fewer) + shift) >= off;
+  };
   const float* const fewer = &sums_[whole * permutations_];
   const float* const more = fewer + permutations_;
   std::uint32_t as_far = 1;
-  for (std::size_t i = 0; i < permutations_; ++i)
-    as_far += std::abs(fewer[i] + fraction * (more[i] - fewer[i])) >= off ? 1 : 0;
+  for (std::size_t i = 0; i < permutations_; ++i) as_far += is_as_far(fewer[i], more[i]) ? 1 : 0;
+  // A permutation with the place itself takes the next place instead.
+  for (const Drawn& drawn : drawn_[own_place]) {
+    if (drawn.rank > whole + 1) continue;
+    const std::size_t i = drawn.permutation;
+    const auto without = [&](std::size_t count) {
+      return drawn.rank > count ? sums_[count * permutations_ + i]
+                                : sums_[(count + 1) * permutations_ + i] - own_value;
+    };
+    as_far -= is_as_far(fewer[i], more[i]) ? 1 : 0;
+    as_far += is_as_far(without(whole), without(whole + 1)) ? 1 : 0;
+  }
   return static_cast<float>(as_far) / static_cast<float>(permutations_ + 1);
 }
 

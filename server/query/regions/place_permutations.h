@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "query/regions/surface_values.h"
@@ -30,15 +32,29 @@ class PlacePermutations {
   // Returns the pseudo p-value of a sum of the values of `neighbors` places: the share of the
   // permutations, including the given values, in which the sum is at least as far from its
   // expected value. `neighbors` can have a fraction, for a part of a place. `own` is the value of
-  // the place itself. Returns 1 if nothing can be shuffled.
+  // the place itself. A place with this value, or the nearest value, is not shuffled. Returns 1 if
+  // nothing can be shuffled.
   float chance(double sum, double neighbors, double own) const;
 
  private:
-  const double mean_, number_;
-  std::size_t permutations_;
-  // Of each permutation: the sums of the first random values, as deviations from the mean. The
-  // sums of equally many values are next to each other.
+  // An occurrence of a place in a permutation. The first place has the rank 1.
+  struct Drawn {
+    std::uint32_t permutation = 0, rank = 0;
+  };
+  std::vector<float> values_of_places(const EqualPlaces& places, std::span<const float> areas);
+  void draw(const std::vector<float>& values, std::size_t longest);
+  // Returns the value and the number of the place whose value is nearest to `value`.
+  std::pair<float, std::uint32_t> place_with(double value) const;
+
+  // Values are deviations from the mean of the places.
+  double mean_ = 0;
+  const double number_;
+  const std::size_t permutations_;
+  std::vector<std::pair<float, std::uint32_t>> by_value_;  // the places, ascending by value
+  // Of each permutation: the sums of the values of the first places. The sums of equally many
+  // values are next to each other.
   std::vector<float> sums_;
+  std::vector<std::vector<Drawn>> drawn_;  // by place
 };
 
 }  // namespace strata::query

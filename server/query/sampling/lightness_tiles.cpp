@@ -18,7 +18,7 @@ Result<TileMap> lightness_tiles(const TexelAppearance& colors, const mesh::Surfa
       progress.report(0.9 * double(texel) / double(slots * 64), "Measuring the lightness");
     }
     const bool is_surface = (map.surface_mask[texel / 64] >> texel % 64 & 1u) != 0;
-    if (!is_surface || colors[texel] >> 24 == 0) continue;
+    if (!is_surface || !has_color(colors[texel])) continue;
     const double measured = double{lightness(colors[texel])};
     const auto bits =
         STRATA_TRY(encode_value(type, is_float(type) ? measured : std::round(measured)));

@@ -9,7 +9,8 @@
 namespace strata::query {
 
 // Returns the lightness of each surface texel of the map, 0…100 (L* of CIELAB), as values of
-// `type`, rounded for integer types. A transparent texel has no value. `colors` belong to the map.
+// `type`, rounded for integer types. A texel that is more than half transparent
+// has no value. `colors` belong to the map.
 // Fails when cancelled.
 Result<TileMap> lightness_tiles(const TexelAppearance& colors, const mesh::SurfaceMap& map,
                                 ValueType type, Progress& progress);

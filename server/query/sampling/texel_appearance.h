@@ -20,6 +20,7 @@ namespace strata::query {
 using TexelAppearance = std::vector<std::uint32_t>;
 
 // Colors are sRGB, red in the low byte, alpha in the high byte.
+inline bool has_color(std::uint32_t color) { return color >> 24 >= 128; }
 
 // Returns the interpolated colors of the vertices. `owners` belong to the map and to the geometry.
 Result<TexelAppearance> vertex_colors_of_texels(const mesh::Geometry& geometry,

@@ -49,8 +49,8 @@ Result<AppearanceCache::Texels> AppearanceCache::colors(const mesh::SurfaceMap& 
                                                         Sources sources, const ReadImage& read) {
   if (sources.images.empty() && !has_vertex_colors(*geometry_))
     return fail(ErrorCode::invalid, "Model has no colors",
-                "The model has no colors and shows no surface image. Select by orientation or by "
-                "the values of a layer, or add a surface image.");
+                "The model has no colors and shows no surface image. Add a surface image.");
+  sources.vertices = sources.vertices && has_vertex_colors(*geometry_);
   remove_covered(sources);
   std::string key = std::to_string(map.resolution) + (sources.vertices ? " vertices" : "");
   for (const SurfaceImage& image : sources.images)

@@ -25,8 +25,12 @@ Result<query::TexelSelection> OpenRoom::QueriesPart::texels_like(const Selection
       const auto texels = room_.surface_part_->colors(map.resolution, like.image);
       if (!texels) {
         Error problem = texels.error();
-        if (problem.code == ErrorCode::invalid)
-          problem.field = field + ".like." + (problem.field.empty() ? "by" : problem.field);
+        if (problem.code == ErrorCode::invalid && problem.field.empty()) {
+          problem.field = field + ".like.by";
+          problem.detail += " Or select by orientation or by the values of a layer.";
+        } else if (problem.code == ErrorCode::invalid) {
+          problem.field = field + ".like." + problem.field;
+        }
         return tl::unexpected(std::move(problem));
       }
       return query::select_similar_colors(map, *graph, **texels, similarity, threads);

@@ -419,6 +419,17 @@ def test_lightness(server):
     layer, values = compute(server, model, "lightness", look="red-light", name="Of the image")
     assert "Red light" in layer["description"], layer
     assert max(abs(values[of] - 53.24) for of in ("min", "mean", "max")) < 0.01, values
+    # Without colors of the scan, a place has no lightness where the image is transparent.
+    server.import_model(folded_grid(), "plain.ply", name="Plain", unit="mm")
+    picture = png(64, 64, lambda x, y: (255, 0, 0, 255 if x < 32 else 0))
+    look = server.ok(
+        "POST", "/models/plain/looks?name=Half", picture, headers={"Content-Type": "image/png"}
+    ).json()
+    server.ok("PATCH", f"/models/plain/looks/{look['id']}", {"visible": True})
+    _, values = compute(server, "/models/plain", "lightness")
+    whole = server.get("/models/plain").json()["area_m2"]
+    assert abs(values["mean"] - 53.24) < 0.01, values
+    assert 0.1 * whole < values["area_m2"] < 0.9 * whole, (values, whole)
     # The image is hidden by default.
     _, values = compute(server, model, "lightness", name="Once more")
     assert abs(values["max"] - 100) < 0.05, values

@@ -48,6 +48,7 @@ TEST(ProgressReports, a_watcher_is_called_once_when_the_task_is_cancelled) {
     const Progress::WhenCancelled watcher(progress, [&] { ++during; });
     EXPECT_EQ(during, 0);
     progress.cancel();
+    progress.cancel();
   }
   const Progress::WhenCancelled after(progress, [&] { ++late; });
   EXPECT_EQ(early, 0);

@@ -1,6 +1,6 @@
 // Formats lengths, areas and numbers, and computes the smallest detail that a layer can store.
 
-import { formatCount, pageLocale, withDecimalSign } from "../core/locale";
+import { formatCount, pageLocale, typedNumber, withDecimalSign } from "../core/locale";
 import type { Atlas, Model, Unit } from "../core/types";
 
 export const metresPer = (unit: Unit): number => ({ mm: 0.001, cm: 0.01, m: 1 })[unit];
@@ -139,3 +139,7 @@ export function ticks(min: number, max: number, most = 5): number[] {
 /** Returns a share of an area such as "98.2 %", for reports. */
 export const shareText = (part: number, whole: number): string =>
   whole > 0 ? `${formatNumber((100 * part) / whole, 3)} %` : "–";
+
+/** Returns the direction of north in degrees for a field, or as another program wrote it. */
+export const typedNorth = ({ north }: Pick<Model, "north">): string =>
+  north === "" || Number.isNaN(Number(north)) ? north : typedNumber(Number(north));

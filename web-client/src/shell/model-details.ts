@@ -12,6 +12,7 @@ import {
   formatLength,
   formatSize,
   metresPer,
+  typedNorth,
 } from "../domain/measure";
 import { toldSurveyDate } from "../domain/surveys";
 import { mayDownload, type Model, type Role } from "../core/types";
@@ -31,6 +32,10 @@ function openEdgesText({ open_edges: edges }: Model): string {
   if (edges.loops === 0) return words.closed_surface;
   return words.loops(edges.loops, formatLength(edges.length_m), formatLength(edges.longest_m[0]!));
 }
+
+/** The direction of north in degrees, or as another program wrote it. */
+const northText = (model: Model): string =>
+  Number.isNaN(Number(model.north)) ? model.north : model.north && `${typedNorth(model)}°`;
 
 @customElement("strata-about-sheet")
 export class StrataModelDetails extends LitElement {
@@ -60,7 +65,7 @@ export class StrataModelDetails extends LitElement {
       [words.area, formatArea(model.area_m2)],
       [words.triangles, formatCount(model.triangles)],
       [words.up, upName(model.up)],
-      [words.north, model.north && `${model.north}°`],
+      [words.north, northText(model)],
       [words.smallest, detail ? formatLength(detail.detailM) : ""],
       [words.crs, model.crs],
       [words.inventory_number, model.inventory_number],

@@ -971,7 +971,7 @@ export const texts = {
         hint: "10 8 6 8 14 28 18 8",
         lead: "Anteile von 8 oder 16 Richtungen, im Uhrzeigersinn ab Norden, durch Leerzeichen getrennt.",
         wrong:
-          "Geben Sie 8 oder 16 Zahlen für die Windrichtungen ein, im Uhrzeigersinn ab Norden und durch Leerzeichen getrennt. Keine Zahl darf negativ sein.",
+          "Geben Sie 8 oder 16 Zahlen für die Windrichtungen ein, im Uhrzeigersinn ab Norden und durch Leerzeichen getrennt. Keine Zahl darf negativ sein, und eine muss größer als 0 sein.",
       },
       wind_speed_m_s: {
         label: "Windgeschwindigkeit",

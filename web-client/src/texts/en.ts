@@ -934,7 +934,7 @@ export const texts = {
         hint: "10 8 6 8 14 28 18 8",
         lead: "Shares of 8 or 16 directions, clockwise from north, separated by spaces.",
         wrong:
-          "Enter 8 or 16 numbers for the directions of the wind, clockwise from north, separated by spaces. No number can be negative.",
+          "Enter 8 or 16 numbers for the directions of the wind, clockwise from north, separated by spaces. No number can be negative, and one must be larger than 0.",
       },
       wind_speed_m_s: {
         label: "Speed of the wind",

@@ -961,7 +961,7 @@ export const texts = {
         hint: "10 8 6 8 14 28 18 8",
         lead: "Proporciones de 8 o 16 direcciones, en sentido horario desde el norte, separadas por espacios.",
         wrong:
-          "Introduzca 8 o 16 números para las direcciones del viento, en sentido horario desde el norte y separados por espacios. Ningún número puede ser negativo.",
+          "Introduzca 8 o 16 números para las direcciones del viento, en sentido horario desde el norte y separados por espacios. Ningún número puede ser negativo, y uno debe ser mayor que 0.",
       },
       wind_speed_m_s: {
         label: "Velocidad del viento",

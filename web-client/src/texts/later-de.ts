@@ -527,6 +527,7 @@ export const laterTexts = {
   scale: {
     north: "Norden",
     north_unknown: "nicht bekannt",
+    north_of_map: "der der Karte",
     north_lead:
       "Im Uhrzeigersinn von der Blickrichtung der Vorderansicht nach Norden, von oben gesehen, in Grad. Für Nordpfeile, Sonne und Regen.",
     title: (size) => `Ist dieses Objekt ${size} groß?`,

@@ -520,6 +520,7 @@ export const laterTexts = {
   scale: {
     north: "North",
     north_unknown: "not known",
+    north_of_map: "that of the map",
     north_lead:
       "Clockwise from the view of the front to north, seen from above, in degrees. For north arrows, the sun and the rain.",
     title: (size: string) => `Is this object ${size}?`,

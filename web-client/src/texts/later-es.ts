@@ -524,6 +524,7 @@ export const laterTexts = {
   scale: {
     north: "Norte",
     north_unknown: "no se conoce",
+    north_of_map: "el del mapa",
     north_lead:
       "En el sentido de las agujas del reloj, desde la dirección de la vista frontal hasta el norte, visto desde arriba, en grados. Para flechas de norte, sol y lluvia.",
     title: (size) => `¿Mide este objeto ${size}?`,

@@ -1,13 +1,13 @@
 // <strata-scale-dialog>: asks whether the object's size is right, and corrects the unit, the up
-// direction and the direction of north. Painted values do not change. The dialog is next to the model, which previews the
-// choice.
+// direction and the direction of north. Painted values do not change. The dialog is next to the
+// model, which previews the choice.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { readNumber, typedNumber } from "../../core/locale";
+import { readNumber } from "../../core/locale";
 import { ApiError } from "../../net/api-error";
 import { kUpAxes, upName } from "../../math/camera";
-import { formatSize, likelyScale, metresPer } from "../../domain/measure";
+import { formatSize, likelyScale, metresPer, typedNorth } from "../../domain/measure";
 import type { ScaleProposal } from "../../core/protocol.gen";
 import type { Model, Unit } from "../../core/types";
 import "../../ui/dialog";
@@ -25,7 +25,7 @@ export class StrataScaleDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private _unit: Unit = "m";
   @state() private _up: Model["up"] = "z";
-  @state() private _north = ""; // degrees as typed; empty if it is not known
+  @state() private _north: string | null = null; // degrees as typed, if the user changed them
   @state() private _northWrong = false;
   @state() private _busy = false;
   @query("strata-dialog") private _dialog!: StrataDialog;
@@ -95,12 +95,6 @@ export class StrataScaleDialog extends LitElement {
     const { model } = this.session;
     if (!model) return;
     this.take(likelyScale(model));
-    this.takeNorth(model);
-  }
-
-  private takeNorth({ north }: Model): void {
-    this._north = Number.isFinite(parseFloat(north)) ? typedNumber(Number(north)) : "";
-    this._northWrong = false;
   }
 
   private take({ unit, up }: Pick<Model, "unit" | "up">): void {
@@ -153,8 +147,8 @@ export class StrataScaleDialog extends LitElement {
         <span class="degrees">
           ${numberInput({
             name: "north",
-            value: this._north,
-            placeholder: words.north_unknown,
+            value: this._north ?? typedNorth(model),
+            placeholder: model.crs ? words.north_of_map : words.north_unknown,
             min: -kFullTurn,
             max: kFullTurn,
             wrong: this._northWrong,
@@ -173,15 +167,15 @@ export class StrataScaleDialog extends LitElement {
 
   private async confirm(): Promise<void> {
     const { session } = this;
-    const north = this._north.trim() === "" ? "" : readNumber(this._north);
-    this._northWrong = north !== "" && !(Math.abs(north) <= kFullTurn);
+    const north = this._north?.trim() ? readNumber(this._north) : null;
+    this._northWrong = north !== null && !(Math.abs(north) <= kFullTurn);
     if (this._northWrong) return;
     this._busy = true;
     try {
       await session.changeModel({
         unit: this._unit,
         up: this._up,
-        north: String(north),
+        ...(this._north === null ? {} : { north: north === null ? "" : String(north) }),
         scale_verified: true,
       });
       notices.show("success", texts.scale.saved);
@@ -190,10 +184,8 @@ export class StrataScaleDialog extends LitElement {
       if (error instanceof ApiError && error.status === 412) {
         await session.reloadModel().catch((again: unknown) => notices.error(again));
         notices.show("problem", texts.scale.changed);
-        if (session.model) {
-          this.take(session.model);
-          this.takeNorth(session.model);
-        }
+        if (session.model) this.take(session.model);
+        this._north = null;
       } else {
         notices.error(error);
       }
