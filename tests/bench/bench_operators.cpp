@@ -87,6 +87,7 @@ SurfaceValues make_values(const mesh::SurfaceMap& map, Value value) {
 
 // What the operators work on, and the lengths that they use.
 struct Subject {
+  const mesh::Geometry* geometry = nullptr;
   mesh::SurfaceMap map;
   mesh::TexelGraph graph;
   SurfaceValues numbers, classes, readings;
@@ -100,6 +101,7 @@ struct Subject {
 Subject make_subject(const mesh::Geometry& geometry, int resolution) {
   Progress progress;
   Subject subject;
+  subject.geometry = &geometry;
   subject.map = must(mesh::bake_surface_map(geometry, resolution, progress));
   subject.graph = must(mesh::build_texel_graph(geometry, subject.map, progress));
   subject.side = std::sqrt(subject.map.area_total);
@@ -228,7 +230,12 @@ std::vector<Operator> operators() {
       {"run-off", false,
        [=](const Subject& on, Progress& progress) -> Result<SurfaceValues> {
          const std::vector<std::uint64_t> no_drips(on.map.block_of_slot.size(), 0);
-         return STRATA_TRY(query::run_off(on.numbers, ValueType::f32, {0, 0, 1}, no_drips, on.map,
+         // An owner of nothing: the geometry outlives the subject.
+         const std::shared_ptr<const mesh::Geometry> geometry(std::shared_ptr<void>(), on.geometry);
+         const glm::dvec3 up(0, 0, 1);
+         const auto falls =
+             STRATA_TRY(query::WaterFalls::make(geometry, on.map, on.graph, up, progress));
+         return STRATA_TRY(query::run_off(on.numbers, ValueType::f32, up, no_drips, falls, on.map,
                                           on.graph, progress))
              .passing;
        }},

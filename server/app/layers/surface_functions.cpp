@@ -175,13 +175,17 @@ class SurfaceFunctionValues {
   // In litres per metre of width, from the rain in l/m².
   Result<query::SurfaceValues> run_off(const query::SurfaceValues& rain, ValueType type,
                                        Progress& progress, Stage stage) const {
-    const double drips_found = (2 * stage.from + stage.to) / 3;
+    const double drips_found = (2 * stage.from + stage.to) / 3,
+                 rays_made = (stage.from + stage.to) / 2;
     progress.begin_stage(stage.from, drips_found);
     const auto drips = STRATA_TRY(
         query::dripping_texels(geometry_, *map_, up_, progress, mesh::background_threads()));
-    progress.begin_stage(drips_found, stage.to);
+    progress.begin_stage(drips_found, rays_made);
+    const auto falls =
+        STRATA_TRY(query::WaterFalls::make(geometry_, *map_, *graph_, up_, progress));
+    progress.begin_stage(rays_made, stage.to);
     auto water =
-        STRATA_TRY(query::run_off(rain, type, up_, drips, *map_, *graph_, progress)).passing;
+        STRATA_TRY(query::run_off(rain, type, up_, drips, falls, *map_, *graph_, progress)).passing;
     for (std::uint32_t& bits : water.bits)
       bits = std::bit_cast<std::uint32_t>(
           static_cast<float>(double{std::bit_cast<float>(bits)} * frame_.metres));

@@ -52,6 +52,29 @@ bool RayScene::is_blocked(const glm::vec3& position, const glm::vec3& normal,
   return ray.tfar < 0;
 }
 
+std::optional<RayScene::Hit> RayScene::first_hit(const glm::vec3& from, const glm::vec3& direction,
+                                                 float least) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit found{};
+  found.ray = {from.x,      from.y,      from.z,
+               least,       direction.x, direction.y,
+               direction.z, 0,           std::numeric_limits<float>::infinity(),
+               ~0u,         0,           0};
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(tree_->scene.get(), &context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const Geometry& geometry = *tree_->geometry;
+  const auto corner = [&](std::size_t k) {
+    return geometry.vertices[geometry.indices[3 * std::size_t{found.hit.primID} + k]].position;
+  };
+  const glm::vec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+  return Hit{found.hit.primID,
+             {1 - found.hit.u - found.hit.v, found.hit.u, found.hit.v},
+             found.ray.tfar,
+             glm::dot(normal, direction) > 0};
+}
+
 Result<std::unique_ptr<RayScene>> RayScene::make(std::shared_ptr<const Geometry> geometry,
                                                  Progress& progress) {
   const auto refused = [] {

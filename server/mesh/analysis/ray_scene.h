@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "core/progress.h"
 #include "mesh/surface/geometry.h"
@@ -25,6 +27,18 @@ class RayScene {
   // length 1.
   bool is_blocked(const glm::vec3& position, const glm::vec3& normal, const glm::vec3& direction,
                   float distance = std::numeric_limits<float>::infinity()) const;
+
+  // A point of the model's surface.
+  struct Hit {
+    std::uint32_t triangle = 0;
+    glm::vec3 weights{0};  // of its corners
+    float distance = 0;    // from the beginning of the ray
+    bool from_behind = false;
+  };
+  // Returns the first hit of a ray farther than `least` from its beginning. `direction` has length
+  // 1.
+  std::optional<Hit> first_hit(const glm::vec3& from, const glm::vec3& direction,
+                               float least) const;
 
  private:
   struct Tree;

@@ -22,6 +22,7 @@ namespace {
 using mesh::kNoNeighbour;
 using mesh::Way;
 
+constexpr double kNegligible = 1e-6;  // of the rain
 constexpr const char* kRunning = "Letting water run down";
 
 // The directions in which a texel has neighbors. Links are one direction more.
@@ -69,34 +70,25 @@ class Water {
     return true;
   }
 
-  Result<RunOff> run(const SurfaceValues& rain, ValueType type, Progress& progress) {
+  Result<RunOff> run(const SurfaceValues& rain, ValueType type, const WaterFalls& falls,
+                     Progress& progress) {
     RunOff result;
     const std::size_t slots = map_.block_of_slot.size();
     result.passing = {std::vector<std::uint32_t>(slots * 64), map_.surface_mask};
     std::vector<double> water(slots * 64, 0);
-    for (std::size_t left = order_.size(); left-- > 0;) {
-      if (left % (1 << 18) == 0) {
-        if (progress.cancelled()) return cancelled_problem();
-        progress.report(1 - 0.3 * double(left) / double(order_.size()), kRunning);
+    for_each_texel([&](std::uint32_t texel) {
+      water[texel] = rain_on(texel, rain, type);
+      result.fallen += water[texel];
+    });
+    for (int visit = 0; visit < kMaxVisits; ++visit) {
+      auto later = STRATA_TRY(visit_texels(water, falls, result, progress));
+      double sum = 0;
+      for (const auto& [texel, amount] : later) sum += amount;
+      if (visit + 1 == kMaxVisits || sum <= kNegligible * result.fallen) {
+        result.pooled += sum;
+        break;
       }
-      const std::uint32_t texel = order_[left];
-      const double fallen = rain_on(texel, rain, type);
-      result.fallen += fallen;
-      const double passing = water[texel] + fallen;
-      double across = std::sqrt(double{map_.area[texel]});  // the length across the water's way
-      if (drips_at(texel)) {
-        result.dripped += passing;
-      } else if (!outflows_of(texel)) {
-        if (next_[texel] != kNoNeighbour)
-          water[next_[texel]] += passing;
-        else
-          (leaves_at(texel) ? result.over_edges : result.pooled) += passing;
-      } else {
-        for (const Outflow& each : outflows_) water[each.to] += passing * each.share;
-        across = across_;
-      }
-      result.passing.bits[texel] =
-          std::bit_cast<std::uint32_t>(static_cast<float>(across > 0 ? passing / across : 0));
+      for (const auto& [texel, amount] : later) water[texel] += amount;
     }
     return result;
   }
@@ -153,6 +145,55 @@ class Water {
       });
     }
     return true;
+  }
+
+  // Lets the water of each texel run down, from high to low. Returns the water that landed on
+  // texels that had been visited before.
+  using Landed = std::vector<std::pair<std::uint32_t, double>>;
+  Result<Landed> visit_texels(std::vector<double>& water, const WaterFalls& falls, RunOff& result,
+                              Progress& progress) {
+    Landed later;
+    std::vector<std::uint64_t> visited(map_.block_of_slot.size(), 0);
+    const auto fall = [&](std::uint32_t to, double amount, double& leaving) {
+      if (to == kNoNeighbour) {
+        leaving += amount;
+        return;
+      }
+      result.landed += amount;
+      if ((visited[to / 64] >> to % 64 & 1u) != 0)
+        later.emplace_back(to, amount);
+      else
+        water[to] += amount;
+    };
+    for (std::size_t left = order_.size(); left-- > 0;) {
+      if (left % (1 << 18) == 0) {
+        if (progress.cancelled()) return cancelled_problem();
+        progress.report(1 - 0.3 * double(left) / double(order_.size()), kRunning);
+      }
+      const std::uint32_t texel = order_[left];
+      visited[texel / 64] |= std::uint64_t{1} << texel % 64;
+      const double passing = std::exchange(water[texel], 0);
+      if (!(passing > 0)) continue;
+      double across = std::sqrt(double{map_.area[texel]});  // the length across the water's way
+      if (drips_at(texel)) {
+        fall(falls.below(texel), passing, result.dripped);
+      } else if (!outflows_of(texel)) {
+        if (next_[texel] != kNoNeighbour)
+          water[next_[texel]] += passing;
+        else if (leaves_at(texel))
+          fall(falls.below_edge(texel), passing, result.over_edges);
+        else
+          result.pooled += passing;
+      } else {
+        for (const Outflow& each : outflows_) water[each.to] += passing * each.share;
+        across = across_;
+      }
+      std::uint32_t& bits = result.passing.bits[texel];
+      const double before = double{std::bit_cast<float>(bits)};
+      bits = std::bit_cast<std::uint32_t>(
+          static_cast<float>(before + (across > 0 ? passing / across : 0)));
+    }
+    return later;
   }
 
   struct Outflow {
@@ -249,11 +290,12 @@ Result<std::vector<std::uint64_t>> dripping_texels(
 }
 
 Result<RunOff> run_off(const SurfaceValues& rain, ValueType type, glm::dvec3 up,
-                       std::span<const std::uint64_t> drips, const mesh::SurfaceMap& map,
-                       const mesh::TexelGraph& graph, Progress& progress) {
+                       std::span<const std::uint64_t> drips, const WaterFalls& falls,
+                       const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                       Progress& progress) {
   Water water(map, graph, up, drips);
   if (!water.fill_hollows(progress)) return cancelled_problem();
-  return water.run(rain, type, progress);
+  return water.run(rain, type, falls, progress);
 }
 
 }  // namespace strata::query

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "domain/layers/layer.h"
 #include "query/regions/surface_values.h"
+#include "query/regions/water_falls.h"
 
 namespace strata {
 class Progress;
@@ -25,12 +26,17 @@ struct RunOff {
   // The water that passes each texel per length across its way, as f32: in the unit of `rain` times
   // model units. Rain in l/m² on a model in metres gives litres per metre of width.
   SurfaceValues passing;
-  // In the unit of `rain` times model units². The water that fell equals the sum of the others.
+  // In the unit of `rain` times model units². The water that fell equals the sum of what left the
+  // model at edges and from overhangs, and of what stayed in pools.
   double fallen = 0, over_edges = 0, dripped = 0, pooled = 0;
+  // The water that fell from edges and overhangs on other parts of the surface, in the same unit.
+  double landed = 0;
 };
 
 // Water falls off where the surface faces down by more than this angle, in degrees.
 inline constexpr double kDripAngle = 30;
+
+inline constexpr int kMaxVisits = 4;
 
 // Returns the texels where water falls off, one word per slot. `map` belongs to the geometry. Needs
 // 12 bytes of memory per texel of the map. Fails when cancelled.
@@ -41,8 +47,8 @@ Result<std::vector<std::uint64_t>> dripping_texels(
 // Lets the rain on each texel run down along the surface, from texel to texel. It leaves at the
 // open edges of the mesh and at the texels whose bits are set in `drips` (64 per slot): places
 // where the surface faces so far down that water falls off. Hollows are full and run over. On a
-// piece of surface without such places, the water collects at the lowest texel. What drips does not
-// fall on other parts of the surface.
+// piece of surface without such places, the water collects at the lowest texel. Water that leaves
+// runs on from the texel where it lands, if there is one (`falls`).
 //
 // `rain` are amounts per area of the surface; no value, a negative value and a value that is not a
 // number are no rain. `type` is their type. `up` is in model axes and has length 1.
@@ -53,9 +59,14 @@ Result<std::vector<std::uint64_t>> dripping_texels(
 // square root of the length of its way, in texels. Water at an open edge flows along the edge while
 // a neighbor is lower.
 //
+// Texels are visited once, from high to low. Where water lands on a texel that was visited before,
+// all texels are visited again, at most kMaxVisits times. The rest then counts as pooled: this is
+// water in caves without an outlet.
+//
 // Needs about 32 bytes of memory per texel of the map. Fails when cancelled.
 Result<RunOff> run_off(const SurfaceValues& rain, ValueType type, glm::dvec3 up,
-                       std::span<const std::uint64_t> drips, const mesh::SurfaceMap& map,
-                       const mesh::TexelGraph& graph, Progress& progress);
+                       std::span<const std::uint64_t> drips, const WaterFalls& falls,
+                       const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                       Progress& progress);
 
 }  // namespace strata::query

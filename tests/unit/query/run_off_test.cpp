@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/progress.h"
@@ -43,6 +44,14 @@ std::vector<std::uint64_t> texels_where(const Surface& surface,
   return bits;
 }
 
+WaterFalls falls_of(const Surface& surface) {
+  Progress progress;
+  auto falls = WaterFalls::make(std::make_shared<const mesh::Geometry>(surface.geometry),
+                                surface.map, surface.graph, kUp, progress);
+  EXPECT_TRUE(falls);
+  return std::move(*falls);
+}
+
 RunOff run_on(
     const Surface& surface, const std::function<float(glm::dvec3)>& rain_at,
     const std::function<bool(glm::dvec3)>& drips_at = [](glm::dvec3) { return false; }) {
@@ -52,8 +61,9 @@ RunOff run_on(
     rain.set(texel, {std::bit_cast<std::uint32_t>(rain_at(world(surface, texel))), true});
   });
   Progress progress;
-  auto result = run_off(rain, ValueType::f32, kUp, texels_where(surface, drips_at), surface.map,
-                        surface.graph, progress);
+  const WaterFalls falls = falls_of(surface);
+  auto result = run_off(rain, ValueType::f32, kUp, texels_where(surface, drips_at), falls,
+                        surface.map, surface.graph, progress);
   EXPECT_TRUE(result);
   EXPECT_NEAR(result->fallen, result->over_edges + result->dripped + result->pooled,
               1e-9 * result->fallen);
@@ -210,6 +220,108 @@ TEST(RunOff, drips_where_the_surface_faces_down_by_more_than_30_degrees) {
   }
 }
 
+// Adds a sheet of squares over two parameters, which faces up if x and y grow with them.
+void add_sheet(mesh::TriangleMesh& mesh, const std::function<glm::dvec3(double, double)>& at) {
+  constexpr std::uint32_t kCells = 40;
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (std::uint32_t t = 0; t <= kCells; ++t)
+    for (std::uint32_t s = 0; s <= kCells; ++s)
+      mesh.positions.push_back(at(double(s) / kCells, double(t) / kCells));
+  for (std::uint32_t t = 0; t < kCells; ++t)
+    for (std::uint32_t s = 0; s < kCells; ++s) {
+      const std::uint32_t corner = first + t * (kCells + 1) + s, above = corner + kCells + 1;
+      for (const std::uint32_t each : {corner, corner + 1, above + 1, corner, above + 1, above})
+        mesh.triangles.push_back(each);
+    }
+}
+
+// A roof that leans to the right by 10.
+void add_roof(mesh::TriangleMesh& mesh, double left, double right, double z, double half_depth) {
+  add_sheet(mesh, [=](double s, double t) {
+    return glm::dvec3(left + (right - left) * s, half_depth * (2 * t - 1), z - 10 * s);
+  });
+}
+
+RunOff run_on_first_roof(const Surface& surface) {
+  const RunOff water =
+      run_on(surface, [](glm::dvec3 at) { return at.z > 49 && at.x < 50 ? 1.0f : 0.0f; });
+  const double right = 60 * std::hypot(40, 10);
+  EXPECT_NEAR(water.fallen, right, 0.01 * right);
+  return water;
+}
+
+TEST(RunOff, lands_on_each_roof_below_an_edge_and_leaves_from_the_lowest) {
+  mesh::TriangleMesh roofs;
+  add_roof(roofs, 0, 40, 60, 30);
+  add_roof(roofs, 100, 140, 40, 30);  // not under the edge
+  const RunOff one = run_on_first_roof(test::surface_of("roof", roofs, kResolution));
+  EXPECT_NEAR(one.over_edges, one.fallen, 1e-6 * one.fallen);
+  EXPECT_EQ(one.landed, 0);
+
+  add_roof(roofs, 0, 80, 20, 50);
+  const Surface surface = test::surface_of("two roofs", roofs, kResolution);
+  const RunOff two = run_on_first_roof(surface);
+  EXPECT_NEAR(two.over_edges, two.fallen, 1e-6 * two.fallen);
+  EXPECT_NEAR(two.landed, two.fallen, 0.001 * two.fallen);
+  const double error = error_of(
+      surface, two, [](glm::dvec3) { return std::hypot(40, 10); },
+      [](glm::dvec3 at) { return at.z < 25 && at.x > 46 && at.x < 78 && std::abs(at.y) < 26; });
+  EXPECT_LT(error, 0.1);
+  RecordProperty("roof", std::to_string(error));
+  test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+    const glm::dvec3 at = world(surface, texel);
+    if (at.z < 25 && at.x < 38) {
+      ASSERT_EQ(std::bit_cast<float>(two.passing.bits[texel]), 0) << at.x;
+    }
+  });
+
+  add_roof(roofs, 20, 150, -10, 60);
+  const RunOff three = run_on_first_roof(test::surface_of("three roofs", roofs, kResolution));
+  EXPECT_NEAR(three.over_edges, three.fallen, 1e-6 * three.fallen);
+  EXPECT_NEAR(three.landed, 2 * three.fallen, 0.001 * three.fallen);
+}
+
+TEST(RunOff, drips_from_an_overhang_onto_the_floor) {
+  // A beam with a round top and a flat bottom, above a floor that leans along it.
+  mesh::TriangleMesh beam;
+  add_sheet(beam, [](double s, double t) {
+    const double turn = std::numbers::pi * (1 - s);
+    return glm::dvec3(20 * std::cos(turn), 80 * t, 20 * std::sin(turn));
+  });
+  add_sheet(beam, [](double s, double t) { return glm::dvec3(20 - 40 * s, 80 * t, 0); });
+  add_sheet(beam, [](double s, double t) {
+    return glm::dvec3(-50 + 100 * s, -10 + 100 * t, -30 - 10 * t);
+  });
+  const Surface surface = test::surface_of("beam", beam, kResolution);
+  const RunOff water = run_on(
+      surface, [](glm::dvec3 at) { return at.z > 0.5 ? 1.0f : 0.0f; },
+      [](glm::dvec3 at) { return at.z > -1 && at.z < 0.3; });
+  EXPECT_NEAR(water.landed, water.fallen, 0.001 * water.fallen);
+  EXPECT_NEAR(water.over_edges, water.fallen, 0.001 * water.fallen);
+  double sum = 0, aside = 0;
+  test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+    const glm::dvec3 at = world(surface, texel);
+    if (at.z > -20) return;
+    const double passing =
+        double{std::bit_cast<float>(water.passing.bits[texel])} * double{surface.map.area[texel]};
+    sum += passing;
+    aside += passing * std::abs(at.x);
+  });
+  EXPECT_NEAR(aside / sum, 20, 1.5);
+}
+
+TEST(RunOff, in_a_cave_without_an_outlet_stays_there) {
+  mesh::TriangleMesh cave = test::sphere(32);
+  for (std::size_t i = 0; i < cave.triangles.size(); i += 3)
+    std::swap(cave.triangles[i], cave.triangles[i + 1]);
+  const Surface surface = test::surface_of("cave", cave, 256);
+  const auto is_ceiling = [](glm::dvec3 at) { return at.z > 0.5; };
+  const RunOff water = run_on(
+      surface, [&](glm::dvec3 at) { return is_ceiling(at) ? 1.0f : 0.0f; }, is_ceiling);
+  EXPECT_GT(water.landed, 0);
+  EXPECT_NEAR(water.pooled, water.fallen, 0.001 * water.fallen);
+}
+
 TEST(RunOff, collects_at_the_lowest_place_of_a_closed_surface) {
   const Surface sphere = test::surface_of("sphere", test::sphere(32), 256);
   const RunOff water = run_on(sphere, [](glm::dvec3 at) { return at.z > 0 ? 1.0f : 0.0f; });
@@ -229,11 +341,13 @@ TEST(RunOff, ignores_amounts_that_are_no_rain) {
 
 TEST(RunOff, can_be_cancelled) {
   const Surface surface = wall(kAtlases[0], 0);
+  const WaterFalls falls = falls_of(surface);
   Progress progress;
   progress.cancel();
   const std::vector<std::uint64_t> none(surface.map.block_of_slot.size(), 0);
   const SurfaceValues dry{std::vector<std::uint32_t>(none.size() * 64), none};
-  EXPECT_FALSE(run_off(dry, ValueType::f32, kUp, none, surface.map, surface.graph, progress));
+  EXPECT_FALSE(
+      run_off(dry, ValueType::f32, kUp, none, falls, surface.map, surface.graph, progress));
 }
 
 }  // namespace
