@@ -11,6 +11,8 @@
 #include "domain/people/role.h"
 #include "domain/people/visibility.h"
 #include "expression/expression.h"
+#include "mesh/rollout/fit_developed_surface.h"
+#include "mesh/rollout/sheet_area.h"
 #include "query/conditions/texel_selection.h"
 #include "room/at.h"
 #include "room/place.h"
@@ -38,13 +40,21 @@ struct RegionWhere {  // the surface where a condition is true
   Expression condition;
   std::string text{};  // of the condition
 };
+struct RegionUnrolled {         // the surface that a rollout shows in an area of its sheet
+  mesh::FitRequest fit{};       // without `up` and `zero`, see mesh::fit_sheet
+  std::optional<double> cut{};  // in radians
+  // On the sheet, in model units (mesh::SheetArea).
+  std::vector<std::vector<glm::dvec2>> polygons{};
+  std::vector<mesh::SheetArea::Stroke> strokes{};
+};
 struct Region;
 struct RegionCombined {  // parts that are combined in this order; the first one is added
   std::vector<Region> parts;
 };
 // A part of the surface, and its changes: first its growth, then its smoothing.
 struct Region {
-  std::variant<RegionAround, Outline, RegionLike, RegionWhere, RegionCombined> area{};
+  std::variant<RegionAround, Outline, RegionLike, RegionWhere, RegionUnrolled, RegionCombined>
+      area{};
   // Grows by this distance, or shrinks if negative (query::grow). In model units.
   double grow = 0;
   // Smooths with this width (query::smooth). In model units; 0: no change.
@@ -58,6 +68,7 @@ struct Selection {
   using Around = RegionAround;
   using Like = RegionLike;
   using Where = RegionWhere;
+  using Unrolled = RegionUnrolled;
   using Combined = RegionCombined;
   using Region = room::Region;
   std::optional<Expression> where{};  // a condition

@@ -5,7 +5,6 @@
 
 #include "app/layers/drawn_layers.h"
 #include "domain/scene/model.h"
-#include "domain/scene/up.h"
 #include "mesh/surface/surface_normals.h"
 #include "query/sampling/surface_colors.h"
 #include "room/caches/surface_image_cache.h"
@@ -55,19 +54,13 @@ double relief_at(const mesh::RolloutSheet& sheet, const mesh::RolloutHit& pixel,
 
 }  // namespace
 
-Result<RolloutPlan> plan_rollout(const RolloutRequest& request) {
-  const auto geometry = request.room->surface().geometry();
-  mesh::FitRequest wanted = request.fit;
-  const UpFrame frame = up_frame(request.room->model().up);
-  wanted.up = frame.up;
-  wanted.zero = -frame.into;  // the front of the model
-  const auto fit = STRATA_TRY(mesh::fit_developed_surface(*geometry, wanted));
-  const auto sheet = STRATA_TRY(mesh::plan_rollout(*geometry, fit, request.cut));
-  return RolloutPlan{fit, sheet};
+Result<mesh::FittedSheet> plan_rollout(const RolloutRequest& request) {
+  return mesh::fit_sheet(*request.room->surface().geometry(), request.fit, request.cut,
+                         request.room->model().up);
 }
 
 Result<Picture> draw_rollout(const Services& services, const RolloutRequest& request,
-                             const RolloutPlan& plan, const mesh::RolloutWindow& window,
+                             const mesh::FittedSheet& plan, const mesh::RolloutWindow& window,
                              Progress& progress) {
   const auto geometry = request.room->surface().geometry();
   const auto tree = request.room->surface().search_tree();

@@ -28,19 +28,14 @@ struct RolloutRequest {
   bool relief = true;         // shade the surface where it deviates from the cylinder or cone
 };
 
-// A rollout without its pixels.
-struct RolloutPlan {
-  mesh::DevelopedFit fit;
-  mesh::RolloutSheet sheet;
-};
-// Fits the cylinder or cone and lays out the sheet. Errors: see fit_developed_surface. Blocks.
-Result<RolloutPlan> plan_rollout(const RolloutRequest& request);
+// Fits the cylinder or cone and lays out the sheet. Errors: see mesh::fit_sheet. Blocks.
+Result<mesh::FittedSheet> plan_rollout(const RolloutRequest& request);
 
 // Draws a window of the sheet. Pixels without a surface are transparent. Returns 422 for a palette
 // that uses a column invisible to the role, 503 if there is too little memory, and `cancelled`.
 // Blocks.
 Result<Picture> draw_rollout(const Services& services, const RolloutRequest& request,
-                             const RolloutPlan& plan, const mesh::RolloutWindow& window,
+                             const mesh::FittedSheet& plan, const mesh::RolloutWindow& window,
                              Progress& progress);
 
 }  // namespace strata::app

@@ -34,7 +34,7 @@ RolloutRequest rollout_of(const FigureRequest& request) {
   return rollout;
 }
 
-Result<RolloutPlan> plan(const RolloutRequest& rollout) {
+Result<mesh::FittedSheet> plan(const RolloutRequest& rollout) {
   auto found = plan_rollout(rollout);
   if (!found && !found.error().field.empty())
     found.error().field = "rollout." + found.error().field;
@@ -130,7 +130,7 @@ Result<std::shared_ptr<const TemporaryFile>> make_rollout_figure(
   progress.begin_stage(0, 0.1);
   progress.report(0, "Measuring");
   const RolloutRequest rollout = rollout_of(request);
-  const RolloutPlan planned = STRATA_TRY(plan(rollout));
+  const mesh::FittedSheet planned = STRATA_TRY(plan(rollout));
   const mesh::RolloutSheet& surface = planned.sheet;
   const double metres = request.room->model().metres();
   const auto chosen_with = [&](const std::vector<figure::Legend>& legends) {

@@ -7,11 +7,13 @@
 #include <numbers>
 
 #include "domain/people/question.h"
+#include "domain/scene/up.h"
 
 namespace strata::mesh {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kRounding = 1e-9;  // of an angle
 constexpr int kSectors = 720;
 constexpr int kMinGap = 3;  // in sectors; smaller gaps come from rounding
 // Faces at a smaller angle to the axis than about 20° are floors, lids and rims.
@@ -90,6 +92,13 @@ glm::dvec2 RolloutSheet::on_sheet(const SurfacePlace& place) const {
   return {std::abs(from_apex) * std::sin(angle), apex + from_apex * std::cos(angle)};
 }
 
+double RolloutSheet::beyond_cut() const {
+  if (to - from < kTurn - kRounding) return 0;
+  // The sector of a cone leaves a gap on the plane. Both ends continue to the middle of the gap.
+  const double fan = kTurn * std::abs(std::sin(surface.half_angle));
+  return surface.is_cone() ? std::min(kTurn / 2, (kTurn - fan) / 2 / fan * kTurn) : kTurn / 2;
+}
+
 std::optional<RolloutSheet::SurfacePlace> RolloutSheet::on_surface(const glm::dvec2& sheet) const {
   SurfacePlace place;
   if (surface.is_cone()) {
@@ -159,8 +168,11 @@ Result<RolloutSheet> plan_rollout(const Geometry& geometry, const DevelopedFit& 
     for_each_wall(geometry, fit, [&](const std::array<DevelopedSurface::Place, 3>& corners) {
       const auto [first, last] =
           std::minmax({corners[0].angle, corners[1].angle, corners[2].angle});
-      const double from = wrapped(first - start), to = from + (last - first);
-      low = std::min(low, to > kTurn ? 0 : from);
+      double from = wrapped(first - start);
+      // Because of rounding, a wall that begins or ends at the cut can cross it.
+      if (from > kTurn - kRounding) from -= kTurn;
+      const double to = from + (last - first);
+      low = std::min(low, to > kTurn + kRounding ? 0 : from);
       high = std::max(high, std::min(to, kTurn));
     });
   }
@@ -170,6 +182,17 @@ Result<RolloutSheet> plan_rollout(const Geometry& geometry, const DevelopedFit& 
   sheet.to = middle + (high - low) / 2;
   find_bounds(sheet);
   return sheet;
+}
+
+Result<FittedSheet> fit_sheet(const Geometry& geometry, FitRequest request,
+                              const std::optional<double>& cut, std::string_view up) {
+  const UpFrame frame = up_frame(up);
+  request.up = frame.up;
+  request.zero = -frame.into;  // the front of the model
+  FittedSheet fitted;
+  fitted.fit = STRATA_TRY(fit_developed_surface(geometry, request));
+  fitted.sheet = STRATA_TRY(plan_rollout(geometry, fitted.fit, cut));
+  return fitted;
 }
 
 }  // namespace strata::mesh

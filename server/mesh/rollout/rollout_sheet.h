@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "mesh/rollout/fit_developed_surface.h"
 
@@ -24,6 +25,10 @@ struct RolloutSheet {
     double angle = 0, slant = 0;
   };
   glm::dvec2 on_sheet(const SurfacePlace& place) const;
+  // The sheet of a wall that goes all around the axis continues past both ends of the cut, with the
+  // surface at the other end. Returns by which angle: half a turn, or less if the sheet of a cone
+  // would overlap itself. 0 for other walls.
+  double beyond_cut() const;
   std::optional<SurfacePlace> on_surface(const glm::dvec2& sheet) const;  // nullopt: outside it
   // Returns the direction of growing slants on the sheet. The lines of a cone fan out.
   glm::dvec2 up_at(double angle) const;
@@ -32,11 +37,23 @@ struct RolloutSheet {
   glm::dvec3 in_world(const SurfacePlace& place, const glm::dvec2& on_sheet, double over) const;
 };
 
+// A cylinder or cone with its sheet.
+struct FittedSheet {
+  DevelopedFit fit;
+  RolloutSheet sheet;
+};
+
 // Finds the part of the surface that the walls of the model cover on this side. `cut` is an angle
 // in radians. Without it, the cut is in the middle of the largest gap of the model, or, if there is
 // no gap, opposite the angle 0. Checks the current question. Returns an `invalid` error if no
 // triangle faces the side.
 Result<RolloutSheet> plan_rollout(const Geometry& geometry, const DevelopedFit& fit,
                                   const std::optional<double>& cut);
+
+// Fits a cylinder or cone and plans its rollout. `up` is one of kUpDirections: a fitted axis points
+// up, and the angle 0 is the front of the model. The request's own values for these two have no
+// effect. Errors: those of fit_developed_surface and plan_rollout.
+Result<FittedSheet> fit_sheet(const Geometry& geometry, FitRequest request,
+                              const std::optional<double>& cut, std::string_view up);
 
 }  // namespace strata::mesh

@@ -5,8 +5,7 @@
 #include <span>
 
 #include "core/progress.h"
-#include "mesh/rollout/rollout_sheet.h"
-#include "mesh/surface/search_tree.h"
+#include "mesh/rollout/rollout_rays.h"
 
 namespace strata::mesh {
 
@@ -25,20 +24,13 @@ RolloutWindow window_of(const RolloutSheet& sheet, double units_per_pixel);
 // Returns the number of pixels of such a window, which may exceed the largest int.
 double pixels_of(const RolloutSheet& sheet, double units_per_pixel);
 
-// The point of the model at the center of a pixel.
-struct RolloutHit {
-  RolloutSheet::SurfacePlace place;
-  SearchTree::Hit hit;
-};
 // Receives the pixels of a row from the left. Called from several threads, once for each row.
 using SeeRolloutRow =
     std::function<void(int row, std::span<const std::optional<RolloutHit>> pixels)>;
 
-// Casts a ray through the center of each pixel, perpendicular to the cylinder or cone: from the
-// outside to the axis, or from the axis to the outside. A pixel has a hit if the first surface on
-// the ray faces the viewer. `tree` and `sheet` are of `geometry`. Runs on several threads, with the
-// memory of one row for each. Checks the current question. Returns `cancelled` after a
-// cancellation.
+// Casts a ray through the center of each pixel (RolloutRays::cast). `tree` and `sheet` are of
+// `geometry`. Runs on several threads, with the memory of one row for each. Checks the current
+// question. Returns `cancelled` after a cancellation.
 Result<void> trace_rollout(const SearchTree& tree, const Geometry& geometry,
                            const RolloutSheet& sheet, const RolloutWindow& window,
                            const SeeRolloutRow& see, Progress& progress);

@@ -81,6 +81,9 @@ class OpenRoom::QueriesPart final : public Queries {
   // `field` is the name of the region in errors.
   Result<query::TexelSelection> texels_like(const Selection::Like& like, At at,
                                             const mesh::SurfaceMap& map, const std::string& field);
+  Result<query::TexelSelection> texels_unrolled(const Selection::Unrolled& unrolled,
+                                                const mesh::SurfaceMap& map,
+                                                const std::string& field);
   // Like `texels_within`, for each map.
   Result<std::vector<std::optional<query::TexelSelection>>> select_texels(
       const Selection& selection, std::span<const mesh::SurfaceMap* const> maps);

@@ -12,6 +12,7 @@
 #include "query/conditions/expression_evaluator.h"
 #include "query/conditions/flood.h"
 #include "query/conditions/texel_values.h"
+#include "query/conditions/unrolled.h"
 #include "query/regions/dilate_erode.h"
 #include "room/open/open_queries.h"
 #include "room/pipeline/expression_binding.h"
@@ -100,6 +101,9 @@ Result<query::TexelSelection> OpenRoom::QueriesPart::texels_of(
                    return texels_where(where.condition, selection, map, region.field + ".where",
                                        is_plain ? inside : nullptr);
                  },
+                 [&](const Selection::Unrolled& unrolled) -> Texels {
+                   return texels_unrolled(unrolled, map, region.field);
+                 },
                  [&](const Selection::Combined& combined) -> Texels {
                    return texels_of(combined, selection, map);
                  }},
@@ -114,6 +118,21 @@ Result<query::TexelSelection> OpenRoom::QueriesPart::texels_of(
   if (region.smooth != 0)
     texels = STRATA_TRY(query::smooth(texels, region.smooth, map, *graph, progress, threads));
   return texels;
+}
+
+Result<query::TexelSelection> OpenRoom::QueriesPart::texels_unrolled(
+    const Selection::Unrolled& unrolled, const mesh::SurfaceMap& map, const std::string& field) {
+  const mesh::Geometry& geometry = *room_.geometry_;
+  auto fitted = mesh::fit_sheet(geometry, unrolled.fit, unrolled.cut, room_.model().up);
+  if (!fitted) {
+    Error problem = std::move(fitted.error());
+    problem.field = field + ".unrolled." + problem.field;
+    return tl::unexpected(std::move(problem));
+  }
+  const auto tree = room_.surface_lookup_->tree();
+  const mesh::RolloutRays rays(*tree, geometry, fitted->sheet);
+  const mesh::SheetArea area(unrolled.polygons, unrolled.strokes);
+  return query::select_unrolled(map, rays, geometry.origin, area, mesh::background_threads());
 }
 
 Result<query::TexelSelection> OpenRoom::QueriesPart::texels_of(const Selection::Combined& combined,

@@ -256,6 +256,18 @@ TEST(Rollout, a_barrel_vault_is_cut_in_its_gap) {
   EXPECT_GT(share, 0.98);
 }
 
+TEST(Rollout, the_ends_of_a_wall_can_be_its_cut) {
+  for (const double share : {0.3, 0.45, 0.8}) {
+    const Surface surface = test::cut_surface(wall(30, 0, 40, share), kCuts[1], 256);
+    const RolloutSheet sheet = roll_out(surface.geometry).sheet;
+    for (const double cut : {sheet.from, sheet.to, sheet.middle() + kPi}) {
+      const RolloutSheet again = roll_out(surface.geometry, {}, cut).sheet;
+      EXPECT_NEAR(again.from, sheet.from, 1e-6) << share;
+      EXPECT_NEAR(again.to, sheet.to, 1e-6) << share;
+    }
+  }
+}
+
 TEST(Rollout, the_caller_chooses_the_cut) {
   const Surface surface = test::cut_surface(wall(20, 0, 40), kCuts[1], 256);
   for (const double cut : {-3.0, 0.0, 1.5, 4.0}) {

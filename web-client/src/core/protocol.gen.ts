@@ -3441,7 +3441,54 @@ export interface Like {
   radius_mm?: number;
 }
 
-/** Part of the surface. The surface around a point, the visible surface inside an outline in the window of a camera, the surface that looks like the surface at a point, the surface where a condition is true, a saved selection, or a combination of such parts. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance. Combinations can be nested at most 4 deep and have at most 64 parts that are no combinations, including those of saved selections. */
+/** Axis of a rollout. */
+export interface RolloutAxis {
+  /** A point on the axis, in world coordinates. */
+  point: Point3;
+  /** The direction that is up on the sheet. Its length must not be 0. */
+  direction: Point3;
+}
+
+/** Shape of the surface of a rollout. */
+export type RolloutShape = "cylinder" | "cone";
+
+/** Side of a wall. `outside` is seen from around the model, `inside` from the axis. */
+export type RolloutSide = "outside" | "inside";
+
+/** Point on an unrolled sheet. x to the right and y up, in millimeters. x is 0 in the middle of the sheet, and y is 0 at the point of the axis. */
+export type SheetPoint = [number, number];
+
+/** Outline of an area on an unrolled sheet. The last point is joined to the first. If the outline crosses itself, areas that it encloses twice are outside. */
+export type SheetOutline = SheetPoint[];
+
+/** Stroke on an unrolled sheet. */
+export interface SheetStroke {
+  /** Consecutive points are joined. A path with only one point is a dab. */
+  path: SheetPoint[];
+  /** Radius of the brush on the sheet. */
+  radius_mm: number;
+}
+
+/** Area on an unrolled sheet. The surface that a rollout shows inside the polygons or under the strokes. Surface that the rollout does not show is not included, such as the other side of a wall, or surface behind a handle. The sheet is the same as that of a rollout with the same members. To get a fixed sheet, send the values of `RolloutSheet`. Where the wall goes all around the axis, the area can extend past the cut: the sheet continues there with the surface at the other end. */
+export interface Unrolled {
+  /** Required for models without a unique axis, such as spheres. */
+  axis?: RolloutAxis;
+  /** Default: a cone if it fits clearly better. */
+  shape?: RolloutShape;
+  /** Radius at `axis.point`, in units of the model. Only together with `axis`. */
+  radius?: number;
+  /** Angle between the axis and the surface of a cone in degrees, positive if the radius grows along the axis. Only together with `radius`. */
+  half_angle?: number;
+  /** Default: the side with the larger area. */
+  side?: RolloutSide;
+  /** Angle of the cut in degrees, counterclockwise from `zero` of the sheet. Default: the middle of the largest gap of the model, or 180 (the back) if there is no gap. */
+  cut?: number;
+  /** Polygons and strokes can have at most 16384 points in total. */
+  polygons?: SheetOutline[];
+  strokes?: SheetStroke[];
+}
+
+/** Part of the surface. The surface around a point, the visible surface inside an outline in the window of a camera, the surface that looks like the surface at a point, the surface where a condition is true, the visible surface inside an area of an unrolled sheet, a saved selection, or a combination of such parts. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance. Combinations can be nested at most 4 deep and have at most 64 parts that are no combinations, including those of saved selections. */
 export interface Within {
   like?: Like;
   at?: SurfacePlace;
@@ -3457,6 +3504,7 @@ export interface Within {
   parts?: WithinPart[];
   /** A condition over the layers, as in a fill. */
   where?: string;
+  unrolled?: Unrolled;
   /** Id or slug of a saved selection of the model. The server uses its definition of the moment of the request. */
   selection?: LayerRef;
   /** Adds the surface within this distance of the part. If negative, removes the surface within this distance of the rest of the surface. Distances are measured along the surface, also across seams of the atlas. The edges of the mesh are no borders of the part. */
@@ -3664,20 +3712,6 @@ export interface FigureLabels {
   /** Slug or id of a column of its table. */
   column: string;
 }
-
-/** Axis of a rollout. */
-export interface RolloutAxis {
-  /** A point on the axis, in world coordinates. */
-  point: Point3;
-  /** The direction that is up on the sheet. Its length must not be 0. */
-  direction: Point3;
-}
-
-/** Side of a wall. `outside` is seen from around the model, `inside` from the axis. */
-export type RolloutSide = "outside" | "inside";
-
-/** Shape of the surface of a rollout. */
-export type RolloutShape = "cylinder" | "cone";
 
 /** Request for a rollout. A rollout is the surface of a cylinder or cone, unrolled onto a plane without distortion. The server fits all values that are absent. */
 export interface RolloutRequest {

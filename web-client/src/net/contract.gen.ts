@@ -3201,6 +3201,12 @@ export interface components {
         ServerVersion: wire.ServerVersion;
         /** Values that are computed from the shape of the model */
         ShapeRecipe: wire.ShapeRecipe;
+        /** Outline of an area on an unrolled sheet */
+        SheetOutline: wire.SheetOutline;
+        /** Point on an unrolled sheet */
+        SheetPoint: wire.SheetPoint;
+        /** Stroke on an unrolled sheet */
+        SheetStroke: wire.SheetStroke;
         /** OpenID Connect provider */
         SignInProvider: wire.SignInProvider;
         /** Browser in which a user is signed in */
@@ -3389,6 +3395,8 @@ export interface components {
          * @enum {string}
          */
         Unit: wire.Unit;
+        /** Area on an unrolled sheet */
+        Unrolled: wire.Unrolled;
         /**
          * UUID
          * Format: uuid

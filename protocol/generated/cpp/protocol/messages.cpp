@@ -1015,6 +1015,38 @@ void read(const nlohmann::json& json, LikeBy& value) {
 
 nlohmann::json to_json(const LikeBy& value) { return name(value); }
 
+std::string_view name(RolloutShape value) {
+  switch (value) {
+    case RolloutShape::cylinder: return "cylinder";
+    case RolloutShape::cone: return "cone";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, RolloutShape& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "cylinder") value = RolloutShape::cylinder;
+  if (text == "cone") value = RolloutShape::cone;
+}
+
+nlohmann::json to_json(const RolloutShape& value) { return name(value); }
+
+std::string_view name(RolloutSide value) {
+  switch (value) {
+    case RolloutSide::outside: return "outside";
+    case RolloutSide::inside: return "inside";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, RolloutSide& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "outside") value = RolloutSide::outside;
+  if (text == "inside") value = RolloutSide::inside;
+}
+
+nlohmann::json to_json(const RolloutSide& value) { return name(value); }
+
 std::string_view name(StatisticsPart value) {
   switch (value) {
     case StatisticsPart::pieces: return "pieces";
@@ -1092,38 +1124,6 @@ void read(const nlohmann::json& json, FigureDirection& value) {
 }
 
 nlohmann::json to_json(const FigureDirection& value) { return name(value); }
-
-std::string_view name(RolloutSide value) {
-  switch (value) {
-    case RolloutSide::outside: return "outside";
-    case RolloutSide::inside: return "inside";
-  }
-  return {};
-}
-
-void read(const nlohmann::json& json, RolloutSide& value) {
-  const auto& text = json.get_ref<const std::string&>();
-  if (text == "outside") value = RolloutSide::outside;
-  if (text == "inside") value = RolloutSide::inside;
-}
-
-nlohmann::json to_json(const RolloutSide& value) { return name(value); }
-
-std::string_view name(RolloutShape value) {
-  switch (value) {
-    case RolloutShape::cylinder: return "cylinder";
-    case RolloutShape::cone: return "cone";
-  }
-  return {};
-}
-
-void read(const nlohmann::json& json, RolloutShape& value) {
-  const auto& text = json.get_ref<const std::string&>();
-  if (text == "cylinder") value = RolloutShape::cylinder;
-  if (text == "cone") value = RolloutShape::cone;
-}
-
-nlohmann::json to_json(const RolloutShape& value) { return name(value); }
 
 std::string_view name(FigureRequestPaper value) {
   switch (value) {
@@ -4051,6 +4051,54 @@ Result<void> check(const Like& value, const std::string& field) {
   return {};
 }
 
+void read(const nlohmann::json& json, RolloutAxis& value) {
+  read_member(json, "point", value.point);
+  read_member(json, "direction", value.direction);
+}
+
+nlohmann::json to_json(const RolloutAxis& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "point", value.point);
+  write_member(json, "direction", value.direction);
+  return json;
+}
+
+void read(const nlohmann::json& json, SheetStroke& value) {
+  read_member(json, "path", value.path);
+  read_member(json, "radius_mm", value.radius_mm);
+}
+
+nlohmann::json to_json(const SheetStroke& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "path", value.path);
+  write_member(json, "radius_mm", value.radius_mm);
+  return json;
+}
+
+void read(const nlohmann::json& json, Unrolled& value) {
+  read_optional_member(json, "axis", value.axis);
+  read_optional_member(json, "shape", value.shape);
+  read_optional_member(json, "radius", value.radius);
+  read_optional_member(json, "half_angle", value.half_angle);
+  read_optional_member(json, "side", value.side);
+  read_optional_member(json, "cut", value.cut);
+  read_optional_member(json, "polygons", value.polygons);
+  read_optional_member(json, "strokes", value.strokes);
+}
+
+nlohmann::json to_json(const Unrolled& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "axis", value.axis);
+  write_optional_member(json, "shape", value.shape);
+  write_optional_member(json, "radius", value.radius);
+  write_optional_member(json, "half_angle", value.half_angle);
+  write_optional_member(json, "side", value.side);
+  write_optional_member(json, "cut", value.cut);
+  write_optional_member(json, "polygons", value.polygons);
+  write_optional_member(json, "strokes", value.strokes);
+  return json;
+}
+
 void read(const nlohmann::json& json, Within& value) {
   read_optional_member(json, "like", value.like);
   read_optional_member(json, "at", value.at);
@@ -4061,6 +4109,7 @@ void read(const nlohmann::json& json, Within& value) {
   read_optional_member(json, "steps", value.steps);
   read_optional_member(json, "parts", value.parts);
   read_optional_member(json, "where", value.where);
+  read_optional_member(json, "unrolled", value.unrolled);
   read_optional_member(json, "selection", value.selection);
   read_optional_member(json, "grow_mm", value.grow_mm);
   read_optional_member(json, "smooth_mm", value.smooth_mm);
@@ -4077,6 +4126,7 @@ nlohmann::json to_json(const Within& value) {
   write_optional_member(json, "steps", value.steps);
   write_optional_member(json, "parts", value.parts);
   write_optional_member(json, "where", value.where);
+  write_optional_member(json, "unrolled", value.unrolled);
   write_optional_member(json, "selection", value.selection);
   write_optional_member(json, "grow_mm", value.grow_mm);
   write_optional_member(json, "smooth_mm", value.smooth_mm);
@@ -4403,18 +4453,6 @@ nlohmann::json to_json(const FigureLabels& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "layer", value.layer);
   write_member(json, "column", value.column);
-  return json;
-}
-
-void read(const nlohmann::json& json, RolloutAxis& value) {
-  read_member(json, "point", value.point);
-  read_member(json, "direction", value.direction);
-}
-
-nlohmann::json to_json(const RolloutAxis& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "point", value.point);
-  write_member(json, "direction", value.direction);
   return json;
 }
 

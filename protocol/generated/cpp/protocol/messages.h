@@ -409,8 +409,12 @@ enum class Schema {
   SavedSelectionCreate,
   SavedSelectionPatch,
   SelectChanged,
+  SheetPoint,
+  SheetOutline,
+  SheetStroke,
+  Unrolled,
 };
-constexpr int kSchemaCount = 384;
+constexpr int kSchemaCount = 388;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -3212,7 +3216,68 @@ Result<void> check(const Like& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Like> = Schema::Like;
 
-// Part of the surface. The surface around a point, the visible surface inside an outline in the window of a camera, the surface that looks like the surface at a point, the surface where a condition is true, a saved selection, or a combination of such parts. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance. Combinations can be nested at most 4 deep and have at most 64 parts that are no combinations, including those of saved selections.
+// Axis of a rollout.
+struct RolloutAxis {
+  glm::dvec3 point{0};  // A point on the axis, in world coordinates.
+  glm::dvec3 direction{0};  // The direction that is up on the sheet. Its length must not be 0.
+  bool operator==(const RolloutAxis&) const = default;
+};
+void read(const nlohmann::json& json, RolloutAxis& value);
+nlohmann::json to_json(const RolloutAxis& value);
+template <>
+inline constexpr Schema kSchemaOf<RolloutAxis> = Schema::RolloutAxis;
+
+// Shape of the surface of a rollout.
+enum class RolloutShape { cylinder, cone };
+std::string_view name(RolloutShape value);
+void read(const nlohmann::json& json, RolloutShape& value);
+nlohmann::json to_json(const RolloutShape& value);
+
+// Side of a wall. `outside` is seen from around the model, `inside` from the axis.
+enum class RolloutSide { outside, inside };
+std::string_view name(RolloutSide value);
+void read(const nlohmann::json& json, RolloutSide& value);
+nlohmann::json to_json(const RolloutSide& value);
+
+// Outline of an area on an unrolled sheet. The last point is joined to the first. If the outline crosses itself, areas that it encloses twice are outside.
+using SheetOutline = std::vector<glm::dvec2>;
+
+// Stroke on an unrolled sheet.
+struct SheetStroke {
+  // Consecutive points are joined. A path with only one point is a dab.
+  std::vector<glm::dvec2> path;
+  double radius_mm = 0;  // Radius of the brush on the sheet.
+  bool operator==(const SheetStroke&) const = default;
+};
+void read(const nlohmann::json& json, SheetStroke& value);
+nlohmann::json to_json(const SheetStroke& value);
+template <>
+inline constexpr Schema kSchemaOf<SheetStroke> = Schema::SheetStroke;
+
+// Area on an unrolled sheet. The surface that a rollout shows inside the polygons or under the strokes. Surface that the rollout does not show is not included, such as the other side of a wall, or surface behind a handle. The sheet is the same as that of a rollout with the same members. To get a fixed sheet, send the values of `RolloutSheet`. Where the wall goes all around the axis, the area can extend past the cut: the sheet continues there with the surface at the other end.
+struct Unrolled {
+  std::optional<RolloutAxis> axis;  // Required for models without a unique axis, such as spheres.
+  std::optional<RolloutShape> shape;  // Default: a cone if it fits clearly better.
+  // Radius at `axis.point`, in units of the model. Only together with `axis`.
+  std::optional<double> radius;
+  // Angle between the axis and the surface of a cone in degrees, positive if the radius grows along
+  // the axis. Only together with `radius`.
+  std::optional<double> half_angle;
+  std::optional<RolloutSide> side;  // Default: the side with the larger area.
+  // Angle of the cut in degrees, counterclockwise from `zero` of the sheet. Default: the middle of
+  // the largest gap of the model, or 180 (the back) if there is no gap.
+  std::optional<double> cut;
+  // Polygons and strokes can have at most 16384 points in total.
+  std::optional<std::vector<SheetOutline>> polygons;
+  std::optional<std::vector<SheetStroke>> strokes;
+  bool operator==(const Unrolled&) const = default;
+};
+void read(const nlohmann::json& json, Unrolled& value);
+nlohmann::json to_json(const Unrolled& value);
+template <>
+inline constexpr Schema kSchemaOf<Unrolled> = Schema::Unrolled;
+
+// Part of the surface. The surface around a point, the visible surface inside an outline in the window of a camera, the surface that looks like the surface at a point, the surface where a condition is true, the visible surface inside an area of an unrolled sheet, a saved selection, or a combination of such parts. The surface around a point is at most `radius_mm` away, measured in a straight line. It is also connected to the point within that distance. Combinations can be nested at most 4 deep and have at most 64 parts that are no combinations, including those of saved selections.
 struct Within {
   std::optional<Like> like;
   std::optional<SurfacePlace> at;
@@ -3225,6 +3290,7 @@ struct Within {
   std::optional<std::vector<OutlineStep>> steps;
   std::optional<std::vector<nlohmann::json>> parts;  // Parts that are combined in the given order.
   std::optional<std::string> where;  // A condition over the layers, as in a fill.
+  std::optional<Unrolled> unrolled;
   // Id or slug of a saved selection of the model. The server uses its definition of the moment of
   // the request.
   std::optional<LayerRef> selection;
@@ -3527,29 +3593,6 @@ void read(const nlohmann::json& json, FigureLabels& value);
 nlohmann::json to_json(const FigureLabels& value);
 template <>
 inline constexpr Schema kSchemaOf<FigureLabels> = Schema::FigureLabels;
-
-// Axis of a rollout.
-struct RolloutAxis {
-  glm::dvec3 point{0};  // A point on the axis, in world coordinates.
-  glm::dvec3 direction{0};  // The direction that is up on the sheet. Its length must not be 0.
-  bool operator==(const RolloutAxis&) const = default;
-};
-void read(const nlohmann::json& json, RolloutAxis& value);
-nlohmann::json to_json(const RolloutAxis& value);
-template <>
-inline constexpr Schema kSchemaOf<RolloutAxis> = Schema::RolloutAxis;
-
-// Side of a wall. `outside` is seen from around the model, `inside` from the axis.
-enum class RolloutSide { outside, inside };
-std::string_view name(RolloutSide value);
-void read(const nlohmann::json& json, RolloutSide& value);
-nlohmann::json to_json(const RolloutSide& value);
-
-// Shape of the surface of a rollout.
-enum class RolloutShape { cylinder, cone };
-std::string_view name(RolloutShape value);
-void read(const nlohmann::json& json, RolloutShape& value);
-nlohmann::json to_json(const RolloutShape& value);
 
 // Request for a rollout. A rollout is the surface of a cylinder or cone, unrolled onto a plane without distortion. The server fits all values that are absent.
 struct RolloutRequest {

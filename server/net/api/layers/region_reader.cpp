@@ -1,11 +1,13 @@
 #include "net/api/layers/region_reader.h"
 
 #include <algorithm>
+#include <glm/trigonometric.hpp>
 
 #include "domain/layers/layer.h"
 #include "domain/scene/model.h"
 #include "domain/scene/units.h"
 #include "expression/expression_parser.h"
+#include "net/api/models/rollout_fit.h"
 #include "net/api/route_help.h"
 #include "net/serialization/at_field.h"
 #include "net/serialization/edit_serialization.h"
@@ -58,6 +60,33 @@ Result<room::Selection::Like> RegionReader::like(protocol::Like& body,
     body.look = image->id.number();
   }
   return like;
+}
+
+Result<room::Selection::Unrolled> RegionReader::unrolled(const protocol::Unrolled& body,
+                                                         const std::string& field) const {
+  auto fit = read_fit({body.axis, body.shape, body.radius, body.half_angle, body.side, body.cut});
+  if (!fit) return at_field(fit.error(), field + "." + fit.error().field);
+  room::Selection::Unrolled unrolled{.fit = *fit};
+  if (body.cut) unrolled.cut = glm::radians(*body.cut);
+  const double units_per_mm = in_model_units(1, room_.model().unit);
+  std::size_t points = 0;
+  for (const auto& polygon : body.polygons.value_or(std::vector<protocol::SheetOutline>{})) {
+    points += polygon.size();
+    for (auto& in_units = unrolled.polygons.emplace_back(); const glm::dvec2& point : polygon)
+      in_units.push_back(point * units_per_mm);
+  }
+  for (const auto& stroke : body.strokes.value_or(std::vector<protocol::SheetStroke>{})) {
+    points += stroke.path.size();
+    auto& in_units = unrolled.strokes.emplace_back();
+    in_units.radius = stroke.radius_mm * units_per_mm;
+    for (const glm::dvec2& point : stroke.path) in_units.path.push_back(point * units_per_mm);
+  }
+  if (points > kMaxOutlinePoints)
+    return fail(ErrorCode::invalid, "Too many points",
+                "The polygons and strokes can have at most " + std::to_string(kMaxOutlinePoints) +
+                    " points in total. Draw a simpler area.",
+                field);
+  return unrolled;
 }
 
 Result<room::Selection::Combined> RegionReader::combined(std::vector<nlohmann::json>& parts,
@@ -145,6 +174,8 @@ Result<room::Selection::Region> RegionReader::region(protocol::Within& within,
     region.area = std::move(*outline);
   } else if (within.like) {
     region.area = STRATA_TRY(like(*within.like, field + ".like"));
+  } else if (within.unrolled) {
+    region.area = STRATA_TRY(unrolled(*within.unrolled, field + ".unrolled"));
   } else if (within.where) {
     auto condition = STRATA_TRY(query::parse_condition(*within.where, field + ".where"));
     region.area = room::Selection::Where{std::move(condition), *within.where};

@@ -46,6 +46,8 @@ class RegionReader {
   Result<room::Selection::Combined> saved(protocol::LayerRef& ref, const std::string& field,
                                           int depth);
   Result<room::Selection::Like> like(protocol::Like& body, const std::string& field) const;
+  Result<room::Selection::Unrolled> unrolled(const protocol::Unrolled& body,
+                                             const std::string& field) const;
 
   const room::Room& room_;
   store::NamedParts& selections_;

@@ -54,7 +54,7 @@ Result<app::RolloutRequest> read_rollout(const RouteContext& context, const Requ
 nlohmann::json numbers(const glm::dvec3& vector) { return {vector.x, vector.y, vector.z}; }
 
 // Returns the `RolloutSheet` of the contract.
-nlohmann::json sheet_json(const app::RolloutPlan& plan, const mesh::RolloutWindow& window,
+nlohmann::json sheet_json(const mesh::FittedSheet& plan, const mesh::RolloutWindow& window,
                           double metres_per_unit) {
   const mesh::RolloutSheet& sheet = plan.sheet;
   const mesh::DevelopedSurface& surface = sheet.surface;
