@@ -36,6 +36,14 @@ export const laterTexts = {
     wrong_pixel: "Geben Sie eine Breite in mm ein, die größer als 0 ist.",
     as_figure: "Als Abbildung …",
     save: "Bild speichern",
+    move: "Verschieben",
+    area: "Fläche",
+    zoom: "Zoom",
+    brush_hint: "Ziehen Sie über das Bild.",
+    area_hint:
+      "Klicken Sie die Ecken an, oder zeichnen Sie einen Umriss. Ein Klick auf die erste Ecke oder die Eingabetaste schließt die Fläche. Die Rücktaste entfernt die letzte Ecke, Escape bricht ab.",
+    paints: (value: string, layer: string) => `Malt „${value}“ auf „${layer}“.`,
+    wrong_width: "Geben Sie eine Breite in mm ein, die größer als 0 ist.",
   },
   nodes: {
     title: "Knoten",

@@ -35,6 +35,14 @@ export const laterTexts = {
     wrong_pixel: "Enter a width in mm that is larger than 0.",
     as_figure: "As a figure…",
     save: "Save picture",
+    move: "Move",
+    area: "Area",
+    zoom: "Zoom",
+    brush_hint: "Drag on the picture.",
+    area_hint:
+      "Click the corners, or draw an outline. Click the first corner or press Enter to close the area. Backspace removes the last corner, Escape cancels.",
+    paints: (value: string, layer: string) => `Paints “${value}” on “${layer}”.`,
+    wrong_width: "Enter a width in mm that is larger than 0.",
   },
   nodes: {
     title: "Nodes",

@@ -36,6 +36,14 @@ export const laterTexts = {
     wrong_pixel: "Introduzca un ancho en mm mayor que 0.",
     as_figure: "Como figura…",
     save: "Guardar imagen",
+    move: "Desplazar",
+    area: "Área",
+    zoom: "Zoom",
+    brush_hint: "Arrastre sobre la imagen.",
+    area_hint:
+      "Haga clic en las esquinas o dibuje un contorno. Un clic en la primera esquina o la tecla Intro cierran el área. Retroceso quita la última esquina, Escape cancela.",
+    paints: (value: string, layer: string) => `Pinta «${value}» en «${layer}».`,
+    wrong_width: "Introduzca un ancho en mm mayor que 0.",
   },
   nodes: {
     title: "Nodos",

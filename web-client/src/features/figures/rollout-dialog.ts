@@ -1,18 +1,28 @@
 // <strata-rollout-dialog>: unrolls the wall of a vessel, column or vault with this user's layers and
-// surface images. It shows the fitted cylinder or cone with a small picture, and saves a PNG file.
-// Its event `figure` requests the dialog of a figure with the same rollout.
+// surface images. It shows the fitted cylinder or cone with a small picture, on which the user can
+// paint, and saves a PNG file. Its event `figure` requests the dialog of a figure with the same
+// rollout.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, state } from "lit/decorators.js";
-import { formatCount, formatFixed } from "../../core/locale";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { formatCount, formatFixed, readNumber, typedNumber } from "../../core/locale";
 import type { RolloutRequest, RolloutSheet } from "../../core/protocol.gen";
+import { labelOf } from "../../domain/cells";
+import { colorOf, cssColor } from "../../domain/palette";
 import { ApiError } from "../../net/api-error";
+import { followSession } from "../../session/follow-session";
+import { describeValue } from "../../session/layer-values";
 import type { ModelSession } from "../../session/model-session";
 import { texts } from "../../texts";
 import "../../ui/dialog";
+import { icon } from "../../ui/icons";
 import { notices } from "../../ui/notices";
+import { numberInput } from "../../ui/number-input";
+import { radioGroup } from "../../ui/radio-group";
 import { saveBlob } from "../../ui/save-from";
 import { formStyles, sharedStyles } from "../../ui/styles";
+import "./rollout-canvas";
+import type { StrataRolloutCanvas } from "./rollout-canvas";
 import { rolloutFields, rolloutNumber, rolloutStyles } from "./rollout-fields";
 import {
   kNewRollout,
@@ -21,9 +31,13 @@ import {
   wrongField,
   type RolloutInput,
 } from "./rollout-request";
+import type { SheetPart, SheetTool } from "./sheet-drawing";
+import { SheetPainting } from "./sheet-painting";
 
 const words = texts.rollouts;
 const kWaitMs = 350; // delay after the last key press
+const kTools: readonly SheetTool[] = ["move", "brush", "area"];
+const kZooms = [1, 2, 4] as const;
 
 @customElement("strata-rollout-dialog")
 export class StrataRolloutDialog extends LitElement {
@@ -34,35 +48,65 @@ export class StrataRolloutDialog extends LitElement {
   @state() private _problem = "";
   @state() private _isDrawing = false;
   @state() private _isSaving = false;
+  @state() private _tool: SheetTool = "move";
+  @state() private _zoom: (typeof kZooms)[number] = 1;
+  @state() private _width = ""; // of the brush, as typed
+  @query("strata-rollout-canvas") private _canvas!: StrataRolloutCanvas | null;
+  // The sheet of the picture, and the width of its pixels.
+  private _shown: { sheet: RolloutSheet; pixelMm: number } | null = null;
   private _timer = 0;
   private _asked: AbortController | null = null;
+  private _painting!: SheetPainting;
+
+  constructor() {
+    super();
+    followSession(this, "painting", "layers", "tables");
+  }
 
   static override styles = [
     sharedStyles,
     formStyles,
     rolloutStyles,
     css`
-      img {
-        display: block;
-        max-width: 100%;
-        max-height: min(50dvh, 480px);
-        margin: 0 auto;
-        background: var(--mark-light); /* paper is white in every theme */
-        outline: var(--edge) solid var(--line);
+      form {
+        display: grid;
+        grid-template-columns: repeat(auto-fit, minmax(min(15rem, 100%), 1fr));
+        align-items: start;
+        gap: var(--space-3) var(--space-4);
       }
       figure {
         min-height: 200px;
         margin: 0;
       }
-      figure[aria-busy="true"] img {
+      figure[aria-busy="true"] .idle {
         opacity: 0.5;
+      }
+      .painting {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: center;
+        gap: var(--space-2) var(--space-4);
+      }
+      .painting .width {
+        width: 5.5rem;
       }
     `,
   ];
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this._input = this.session.figures.draft.rollout ?? kNewRollout;
+    const { session } = this;
+    this._input = session.figures.draft.rollout ?? kNewRollout;
+    this._width = typedNumber(session.painting.brush.width.mm);
+    this._painting = new SheetPainting({
+      api: session.api,
+      modelId: session.modelId,
+      target: (erases) => session.painting.areaTarget(erases),
+      showChange: (texels, areaM2) => session.painting.showChange(texels, areaM2),
+      failed: (error) => notices.error(error),
+      redraw: () => this.draw(),
+      changed: () => this.requestUpdate(),
+    });
     if (wrongField(this._input) === null) void this.draw();
   }
 
@@ -77,7 +121,7 @@ export class StrataRolloutDialog extends LitElement {
     const { model } = this.session;
     const isWrong = wrongField(input) !== null;
     const change = (next: RolloutInput): void => this.change(next);
-    return html`<strata-dialog heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog broad heading=${words.title} .mayClose=${this.mayClose} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p>${words.lead}</p>
       <form id="rollout" novalidate @submit=${this.onSubmit}>
         ${model ? rolloutFields(input, model, change) : nothing}
@@ -91,13 +135,123 @@ export class StrataRolloutDialog extends LitElement {
 
   private sheet(): TemplateResult {
     const { _sheet: sheet, _picture: picture } = this;
-    return html`<figure aria-busy=${this._isDrawing}>
-      ${picture ? html`<img src=${picture} alt=${words.alt} />` : nothing}
+    const shown = picture ? this._shown : null;
+    return html`${shown && this.session.canPaint ? this.tools() : nothing}
+    <figure aria-busy=${this._isDrawing}>
+      ${
+        shown
+          ? html`<strata-rollout-canvas
+              class=${this._tool === "move" ? "idle" : ""}
+              .picture=${picture}
+              .sheet=${shown.sheet}
+              .mmPerPixel=${shown.pixelMm}
+              .tool=${this.tool}
+              .radiusMm=${readNumber(this._width) / 2}
+              .waiting=${this._painting.waiting}
+              .color=${this.color}
+              ?zoomed=${this._zoom > 1}
+              @drawn=${(event: CustomEvent<SheetPart>) => this._painting.paint(shown.sheet, event.detail)}
+            ></strata-rollout-canvas>`
+          : nothing
+      }
       ${this._isDrawing ? html`<p role="status">${words.drawing}</p>` : nothing}
       ${this._problem ? html`<p class="error" role="alert">${this._problem}</p>` : nothing}
       ${sheet ? html`<figcaption class="hint">${this.fitted(sheet)}. ${words.size(formatCount(sheet.width), formatCount(sheet.height))}</figcaption>` : nothing}
     </figure>`;
   }
+
+  private tools(): TemplateResult {
+    const { _tool: tool, _painting: painting } = this;
+    const layer = this.session.layers.selected;
+    const names = { move: words.move, brush: texts.tools.brush, area: words.area };
+    const isWrong = tool === "brush" && !this.hasWidth;
+    return html`<div class="painting">
+        ${radioGroup({
+          label: texts.model.tools,
+          class: "segments",
+          choices: kTools.map((value) => ({ value, content: names[value] })),
+          chosen: tool,
+          choose: (value) => this.choose(value),
+        })}
+        ${radioGroup({
+          label: words.zoom,
+          class: "segments",
+          choices: kZooms.map((value) => ({ value, content: `${value} ×` })),
+          chosen: this._zoom,
+          choose: (value) => this.zoom(value),
+        })}
+        ${
+          tool === "brush"
+            ? html`<label>${texts.brush.width} (mm) <span class="width">${numberInput({
+                value: this._width,
+                name: "width",
+                min: 0.1,
+                wrong: isWrong,
+                typed: (text) => (this._width = text),
+              })}</span></label>`
+            : nothing
+        }
+        ${
+          tool === "move"
+            ? nothing
+            : html`<label class="check"><input
+                  type="checkbox"
+                  name="erases"
+                  .checked=${painting.erases}
+                  @change=${(event: Event) => {
+                    painting.erases = (event.target as HTMLInputElement).checked;
+                    this.requestUpdate();
+                  }}
+                /> ${texts.areas.erases}</label>
+                <button class="icon quiet" ?disabled=${!layer} title=${texts.model.undo} aria-label=${texts.model.undo} @click=${() => layer && painting.undo(layer)}>${icon("undo")}</button>
+                <button class="icon quiet" ?disabled=${!layer} title=${texts.model.redo} aria-label=${texts.model.redo} @click=${() => layer && painting.redo(layer)}>${icon("redo")}</button>`
+        }
+      </div>
+      ${isWrong ? html`<p class="error" role="alert">${words.wrong_width}</p>` : nothing}
+      ${tool === "move" ? nothing : html`<p class="hint" id="paints">${this.paints} ${tool === "area" ? words.area_hint : words.brush_hint}</p>`}`;
+  }
+
+  /** What the tools paint on which layer. */
+  private get paints(): string {
+    const { layers, painting, tables } = this.session;
+    const layer = layers.selected;
+    if (!layer) return texts.brush.no_layer;
+    if (this._painting.erases) return `${texts.brush.erases(labelOf(layer))}.`;
+    const value = describeValue(layer, painting.brush.valueFor(layer), tables);
+    return words.paints(value, labelOf(layer));
+  }
+
+  private get color(): string | null {
+    const { layers, painting } = this.session;
+    const layer = layers.selected;
+    if (!layer || this._painting.erases) return null;
+    const color = colorOf(layers.palette(layer), painting.brush.valueFor(layer));
+    return color ? cssColor(color) : null;
+  }
+
+  private get hasWidth(): boolean {
+    const width = readNumber(this._width);
+    return width > 0 && width <= 1e9;
+  }
+
+  /** The chosen tool, if it can be used. */
+  private get tool(): SheetTool {
+    return this._tool === "brush" && !this.hasWidth ? "move" : this._tool;
+  }
+
+  private choose(tool: SheetTool): void {
+    this._canvas?.discard();
+    this._tool = tool;
+  }
+
+  private zoom(zoom: (typeof kZooms)[number]): void {
+    if (zoom === this._zoom) return;
+    this._zoom = zoom;
+    void this.draw();
+  }
+
+  /** Escape first discards an unfinished area. */
+  private readonly mayClose = (): Promise<boolean> => Promise.resolve(!this._canvas?.discard());
 
   private fitted(sheet: RolloutSheet): string {
     const mmPerUnit = sheet.mm_per_pixel / sheet.units_per_pixel;
@@ -118,6 +272,8 @@ export class StrataRolloutDialog extends LitElement {
     this._input = input;
     this.session.figures.draft.rollout = input;
     this.stop();
+    this._canvas?.discard();
+    this._painting.leaveSheet();
     if (wrongField(this._input) === null)
       this._timer = window.setTimeout(() => void this.draw(), kWaitMs);
   }
@@ -129,10 +285,14 @@ export class StrataRolloutDialog extends LitElement {
     this._isDrawing = false;
   }
 
-  /** Gets the sheet, which is quick, and then a small picture of it. */
-  private async draw(): Promise<void> {
+  /**
+   * Gets the sheet, which is quick, and then a small picture of it. Returns whether the picture is
+   * shown.
+   */
+  private async draw(): Promise<boolean> {
     const { request } = this;
-    if (!request) return;
+    if (!request || !this.isConnected) return false;
+    this.stop();
     const asked = (this._asked = new AbortController());
     const { api, modelId } = this.session;
     const path = { model: modelId };
@@ -144,23 +304,26 @@ export class StrataRolloutDialog extends LitElement {
         body: request,
         signal: asked.signal,
       });
-      if (asked !== this._asked) return;
+      if (asked !== this._asked) return false;
       this._sheet = sheet;
+      const preview = previewOf(request, sheet, this._zoom);
       const picture = await api.blob("POST /models/{model}/rollout", {
         path,
-        body: previewOf(request, sheet),
+        body: preview,
         signal: asked.signal,
       });
-      if (asked !== this._asked) return;
+      if (asked !== this._asked) return false;
+      this._shown = { sheet, pixelMm: preview.mm_per_pixel };
       this.show(URL.createObjectURL(picture));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (asked !== this._asked) return; // a newer request has been sent
+      if (asked !== this._asked) return false; // a newer request has been sent
       this._sheet = null;
       this.show("");
       this._problem = error.message;
     }
     this._isDrawing = false;
+    return this._picture !== "";
   }
 
   private show(picture: string): void {

@@ -115,11 +115,15 @@ export function rolloutRequest(
 
 const kPreviewPixels = 800; // on the longer side
 
-/** Returns a request for a small picture of the same sheet. */
+/**
+ * Returns a request for a small picture of the same sheet. With `zoom`, the picture has more pixels
+ * by this factor.
+ */
 export function previewOf(
   request: RolloutRequest,
   sheet: { width: number; height: number; mm_per_pixel: number },
-): RolloutRequest {
-  const coarser = Math.max(1, Math.max(sheet.width, sheet.height) / kPreviewPixels);
-  return { ...request, mm_per_pixel: sheet.mm_per_pixel * coarser };
+  zoom = 1,
+): RolloutRequest & { mm_per_pixel: number } {
+  const coarser = Math.max(sheet.width, sheet.height) / kPreviewPixels;
+  return { ...request, mm_per_pixel: (sheet.mm_per_pixel * Math.max(1, coarser)) / zoom };
 }

@@ -84,5 +84,9 @@ describe("the request for a rollout", () => {
       mm_per_pixel: 0.5,
     });
     expect(previewOf(request, { width: 300, height: 90, mm_per_pixel: 2 }).mm_per_pixel).toBe(2);
+    // a picture for painting details has more pixels
+    expect(
+      previewOf(request, { width: 4000, height: 1000, mm_per_pixel: 0.1 }, 4).mm_per_pixel,
+    ).toBe(0.125);
   });
 });

@@ -1,0 +1,103 @@
+// The edits of a user on an unrolled sheet. Each part is one edit, sent in the order of drawing.
+
+import type { RolloutSheet } from "../../core/protocol.gen";
+import type { Layer } from "../../core/types";
+import type { Api } from "../../net/api";
+import { withinSheet, type SheetPart } from "./sheet-drawing";
+
+/** A layer, and what an edit does in it. */
+export interface SheetTarget {
+  layer: Layer;
+  paint: { value: number } | { erase: true };
+}
+
+export interface SheetPaintingHost {
+  readonly api: Api;
+  readonly modelId: string;
+  /** Returns null if nothing can be painted, after showing the reason to the user. */
+  target(erases: boolean): SheetTarget | null;
+  showChange(texels: number | undefined, areaM2: number | undefined): void;
+  failed(error: unknown): void;
+  /** Returns whether the picture now shows all edits that were made before the call. */
+  redraw(): Promise<boolean>;
+  changed(): void;
+}
+
+export class SheetPainting {
+  erases = false;
+  /** The parts that the picture does not show yet. */
+  waiting: readonly SheetPart[] = [];
+  private readonly _edits: (() => Promise<void>)[] = [];
+  private readonly _made = new Set<SheetPart>();
+  private _isSending = false;
+
+  constructor(private readonly _host: SheetPaintingHost) {}
+
+  /** Paints or erases a part of this sheet. */
+  paint(sheet: RolloutSheet, part: SheetPart): void {
+    const target = this._host.target(this.erases);
+    if (!target) return;
+    this.waiting = [...this.waiting, part];
+    const { api, modelId: model } = this._host;
+    this.add(async () => {
+      const body = {
+        within: withinSheet(sheet, part),
+        into: { layer: target.layer.id, ...target.paint },
+      };
+      try {
+        const { edit } = await api.json("POST /models/{model}/select", { path: { model }, body });
+        this._host.showChange(edit?.texels_changed, edit?.area_m2);
+        this._made.add(part);
+      } catch (error) {
+        this.forget([part]);
+        throw error;
+      }
+    });
+  }
+
+  /** Undoes or redoes this user's newest edit of the layer. */
+  undo(layer: Layer): void {
+    this.travel(layer, "undo");
+  }
+  redo(layer: Layer): void {
+    this.travel(layer, "redo");
+  }
+
+  private travel(layer: Layer, op: "undo" | "redo"): void {
+    const { api, modelId: model } = this._host;
+    this.add(() =>
+      api.send(`POST /models/{model}/layers/{layer}/${op}`, { path: { model, layer: layer.id } }),
+    );
+  }
+
+  /** Forgets the parts of an earlier sheet. They are still sent. */
+  leaveSheet(): void {
+    this.forget(this.waiting);
+  }
+
+  private forget(parts: readonly SheetPart[]): void {
+    this.waiting = this.waiting.filter((part) => !parts.includes(part));
+    for (const part of parts) this._made.delete(part);
+  }
+
+  private add(edit: () => Promise<void>): void {
+    this._edits.push(edit);
+    this._host.changed();
+    if (!this._isSending) void this.send();
+  }
+
+  private async send(): Promise<void> {
+    this._isSending = true;
+    for (let edit = this._edits.shift(); edit; edit = this._edits.shift()) {
+      try {
+        await edit();
+      } catch (error) {
+        this._host.failed(error);
+      }
+    }
+    this._isSending = false;
+    const made = [...this._made];
+    if (await this._host.redraw()) this.forget(made);
+    this._host.changed();
+  }
+}

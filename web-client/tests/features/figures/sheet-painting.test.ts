@@ -1,0 +1,161 @@
+import { describe, expect, it } from "vitest";
+import type { RolloutSheet } from "../../../src/core/protocol.gen";
+import type { Layer } from "../../../src/core/types";
+import type { Api } from "../../../src/net/api";
+import { SheetPainting } from "../../../src/features/figures/sheet-painting";
+import type { SheetPart } from "../../../src/features/figures/sheet-drawing";
+
+const layer = { id: 7 } as Layer;
+const sheet = {
+  axis: { point: [0, 0, 0], direction: [0, 0, 1] },
+  radius: 40,
+  shape: "cylinder",
+  side: "inside",
+  from: -180,
+  to: 180,
+} as unknown as RolloutSheet;
+const dab = (x: number): SheetPart => ({ strokes: [{ path: [[x, 0]], radius_mm: 1 }] });
+
+/** A server whose responses the test gives. */
+class FakeServer {
+  readonly sent: { call: string; body: unknown; path: unknown }[] = [];
+  readonly answers: { give: (value: unknown) => void; fail: (error: unknown) => void }[] = [];
+  failures: unknown[] = [];
+  changes: unknown[][] = [];
+  redraws = 0;
+  isShown = true;
+  target: { layer: Layer; paint: { value: number } | { erase: true } } | null = {
+    layer,
+    paint: { value: 3 },
+  };
+
+  readonly painting = new SheetPainting({
+    api: {
+      json: (call: string, options: { body: unknown; path: unknown }) => this.ask(call, options),
+      send: (call: string, options: { body: unknown; path: unknown }) => this.ask(call, options),
+    } as unknown as Api,
+    modelId: "pot",
+    target: () => this.target,
+    showChange: (...change) => void this.changes.push(change),
+    failed: (error) => void this.failures.push(error),
+    redraw: () => {
+      ++this.redraws;
+      return Promise.resolve(this.isShown);
+    },
+    changed: () => {},
+  });
+
+  private ask(call: string, { body, path }: { body: unknown; path: unknown }): Promise<unknown> {
+    this.sent.push({ call, body, path });
+    return new Promise((give, fail) => this.answers.push({ give, fail }));
+  }
+}
+
+const settled = (): Promise<void> => new Promise((done) => setTimeout(done));
+
+describe("painting on a sheet", () => {
+  it("sends one edit after the other, and then draws the picture once", async () => {
+    const server = new FakeServer();
+    const { painting } = server;
+    const [first, second] = [dab(1), dab(2)];
+    painting.paint(sheet, first);
+    painting.paint(sheet, second);
+    await settled();
+    expect(painting.waiting).toEqual([first, second]);
+    expect(server.sent).toEqual([
+      {
+        call: "POST /models/{model}/select",
+        path: { model: "pot" },
+        body: {
+          within: {
+            unrolled: { axis: sheet.axis, radius: 40, side: "inside", cut: 180, ...first },
+          },
+          into: { layer: 7, value: 3 },
+        },
+      },
+    ]);
+    server.answers[0]!.give({ edit: { texels_changed: 5, area_m2: 0.25 } });
+    await settled();
+    expect(server.sent.length).toBe(2);
+    expect(server.redraws).toBe(0);
+    server.answers[1]!.give({ edit: { texels_changed: 0, area_m2: 0 } });
+    await settled();
+    expect(server.changes).toEqual([
+      [5, 0.25],
+      [0, 0],
+    ]);
+    expect(server.redraws).toBe(1);
+    expect(painting.waiting).toEqual([]);
+  });
+
+  it("shows parts until the picture contains them", async () => {
+    const server = new FakeServer();
+    const { painting } = server;
+    server.isShown = false;
+    painting.paint(sheet, dab(1));
+    server.answers[0]!.give({});
+    await settled();
+    expect(painting.waiting.length).toBe(1);
+    server.isShown = true;
+    painting.undo(layer);
+    server.answers[1]!.give(undefined);
+    await settled();
+    expect(painting.waiting).toEqual([]);
+  });
+
+  it("forgets a refused part, and sends the next one", async () => {
+    const server = new FakeServer();
+    const { painting } = server;
+    painting.paint(sheet, dab(1));
+    painting.paint(sheet, dab(2));
+    const refused = new Error("locked");
+    server.answers[0]!.fail(refused);
+    await settled();
+    expect(server.failures).toEqual([refused]);
+    expect(painting.waiting).toEqual([dab(2)]);
+    expect(server.sent.length).toBe(2);
+  });
+
+  it("erases, and sends nothing without a layer", () => {
+    const server = new FakeServer();
+    server.target = { layer, paint: { erase: true } };
+    server.painting.paint(sheet, dab(1));
+    expect(server.sent[0]!.body).toMatchObject({ into: { layer: 7, erase: true } });
+    server.target = null;
+    server.painting.paint(sheet, dab(2));
+    expect(server.painting.waiting.length).toBe(1);
+  });
+
+  it("undoes and redoes edits of the layer, and draws the picture again", async () => {
+    const server = new FakeServer();
+    server.painting.undo(layer);
+    server.painting.redo(layer);
+    server.answers[0]!.give(undefined);
+    await settled();
+    server.answers[1]!.give(undefined);
+    await settled();
+    expect(server.sent).toEqual([
+      {
+        call: "POST /models/{model}/layers/{layer}/undo",
+        path: { model: "pot", layer: 7 },
+        body: undefined,
+      },
+      {
+        call: "POST /models/{model}/layers/{layer}/redo",
+        path: { model: "pot", layer: 7 },
+        body: undefined,
+      },
+    ]);
+    expect(server.redraws).toBe(1);
+  });
+
+  it("still sends the parts of an earlier sheet, without showing them", async () => {
+    const server = new FakeServer();
+    server.painting.paint(sheet, dab(1));
+    server.painting.leaveSheet();
+    expect(server.painting.waiting).toEqual([]);
+    server.answers[0]!.give({});
+    await settled();
+    expect(server.redraws).toBe(1);
+  });
+});
