@@ -8,6 +8,8 @@ namespace strata {
 namespace {
 
 constexpr std::size_t kMaxRows = 4096;
+// An edge is listed in each row that it crosses. Fewer rows keep the lists short.
+constexpr double kRowsPerEdge = 32;  // in the mean
 
 }  // namespace
 
@@ -22,7 +24,12 @@ PolygonArea::PolygonArea(const std::vector<std::vector<glm::dvec2>>& rings)
       high_ = glm::max(high_, a);
       if (a.y != b.y) edges.push_back(a.y < b.y ? Edge{a, b} : Edge{b, a});
     }
-  rows_.assign(std::clamp<std::size_t>(edges.size(), 1, kMaxRows) + 1, 0);
+  double heights = 0;  // of all edges, in heights of the bounding box
+  for (const Edge& edge : edges) heights += (edge.upper.y - edge.lower.y) / (high_.y - low_.y);
+  auto rows = std::min(edges.size(), kMaxRows);
+  if (heights > 0)
+    rows = std::min(rows, static_cast<std::size_t>(kRowsPerEdge * double(edges.size()) / heights));
+  rows_.assign(std::max<std::size_t>(rows, 1) + 1, 0);
   for (const Edge& edge : edges)
     for (int row = row_of(edge.lower.y); row <= row_of(edge.upper.y); ++row)
       ++rows_[static_cast<std::size_t>(row) + 1];

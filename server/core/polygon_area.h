@@ -7,7 +7,7 @@ namespace strata {
 
 // The inside of closed rings in a plane, by the even-odd rule. A ring within a ring is a hole, and
 // an area that one ring encloses twice is outside. A point on an edge is either inside or outside.
-// A test visits only the edges at the height of the point.
+// A test visits only the edges at the height of the point. Takes about 1 KiB per point at most.
 class PolygonArea {
  public:
   // Each ring is closed by an edge from its last point to its first. Coordinates must be finite.

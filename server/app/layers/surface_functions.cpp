@@ -33,7 +33,7 @@ namespace strata::app {
 namespace {
 
 // Bytes per texel of the map while one function is computed, and of the values of each function.
-constexpr std::uint64_t kWorkBytesPerTexel = 48, kValueBytesPerTexel = 5;
+constexpr std::uint64_t kWorkBytesPerTexel = 60, kValueBytesPerTexel = 5;
 
 // The part of a job in which a function is computed.
 struct Stage {

@@ -336,7 +336,8 @@ Result<DevelopedFit> fit_developed_surface(const Geometry& geometry, const FitRe
                     (is_outside ? "outward. Choose the inside" : "the axis. Choose the outside") +
                     ", or change the axis.",
                 "side");
-  Meridian line = fit_meridian(wall, request.is_cone.value_or(false));
+  Meridian line;
+  if (!request.radius) line = fit_meridian(wall, request.is_cone.value_or(false));
   if (!request.is_cone && !request.radius) {
     const Meridian cone = fit_meridian(wall, true);
     if (cone.deviation < kConeGain * line.deviation && std::abs(cone.slope) > kMinConeSlope)

@@ -26,6 +26,7 @@ SheetArea::SheetArea(const std::vector<std::vector<glm::dvec2>>& polygons,
     }
   if (!segments_.empty()) sort_into_cells();
   for (const auto& polygon : polygons) {
+    check_question();
     polygons_.emplace_back(std::vector<std::vector<glm::dvec2>>{polygon});
     low_ = glm::min(low_, polygons_.back().low());
     high_ = glm::max(high_, polygons_.back().high());

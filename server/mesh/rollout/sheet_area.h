@@ -18,8 +18,8 @@ class SheetArea {
     double radius = 0;
   };
   // Coordinates must be finite, and paths must not be empty. Each polygon is closed, with the
-  // even-odd rule (PolygonArea). Checks the current question. Takes memory for at most a few
-  // hundred indices per point.
+  // even-odd rule (PolygonArea). Checks the current question. Takes about 1 KiB per point
+  // at most.
   SheetArea(const std::vector<std::vector<glm::dvec2>>& polygons,
             const std::vector<Stroke>& strokes);
 

@@ -432,7 +432,7 @@ Result<SurfaceValues> hot_spot_chances(const SurfaceValues& values, ValueType ty
   double most = 0;
   for (std::uint32_t texel = 0; texel < areas.size(); ++texel)
     if (means.of(texel).valid) most = std::max(most, neighbors.at(texel).number);
-  const PlacePermutations shuffled(places, map.area, most, permutations);
+  const PlacePermutations shuffled(places, map.area, most, permutations, progress);
   return compute_values(means.valid, progress, threads, {"Comparing permutations", 0.8, 1},
                         [&] { return ChanceAtTexels(neighbors, shuffled); });
 }

@@ -63,7 +63,7 @@ Result<SurfaceValues> focal_values(Focal statistic, const SurfaceValues& values,
 // below 0.05. Unlike the score, it assumes no normal distribution.
 //
 // Takes as long as the score, and about 0.6 ns for each texel and permutation. Needs about 40 bytes
-// of memory per texel. Otherwise like focal_values.
+// of memory per texel, and 12 bytes per place. Otherwise like focal_values.
 Result<SurfaceValues> hot_spot_chances(const SurfaceValues& values, ValueType type, double radius,
                                        int permutations, const mesh::SurfaceMap& map,
                                        const mesh::TexelGraph& graph, const std::string& field,

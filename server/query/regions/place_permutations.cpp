@@ -55,19 +55,24 @@ class TexelsByArea {
 }  // namespace
 
 PlacePermutations::PlacePermutations(const EqualPlaces& places, std::span<const float> areas,
-                                     double neighbors, int permutations)
+                                     double neighbors, int permutations, const Progress& progress)
     : number_(std::floor(places.number)), permutations_(static_cast<std::size_t>(permutations)) {
   if (!(places.deviation > 0) || number_ < 2) return;
-  const std::vector<float> values = values_of_places(places, areas);
-  draw(values, static_cast<std::size_t>(std::min(number_, std::ceil(neighbors) + 2)));
+  const std::vector<float> values = values_of_places(places, areas, progress);
+  if (progress.cancelled()) return;
+  draw(values, static_cast<std::size_t>(std::min(number_, std::ceil(neighbors) + 2)), progress);
 }
 
 std::vector<float> PlacePermutations::values_of_places(const EqualPlaces& places,
-                                                       std::span<const float> areas) {
+                                                       std::span<const float> areas,
+                                                       const Progress& progress) {
   const TexelsByArea texels(*places.valid, areas);
   std::vector<float> values;
   double sum = 0;
+  values.reserve(static_cast<std::size_t>(number_));
+  by_value_.reserve(static_cast<std::size_t>(number_));
   for (double place = 0; place < number_; ++place) {
+    if (values.size() % (1u << 18) == 0 && progress.cancelled()) return values;
     const std::uint32_t texel = texels.at((place + 0.5) / number_ * texels.sum());
     values.push_back(std::bit_cast<float>(places.means.bits[texel]));
     sum += double{values.back()};
@@ -81,13 +86,15 @@ std::vector<float> PlacePermutations::values_of_places(const EqualPlaces& places
   return values;
 }
 
-void PlacePermutations::draw(const std::vector<float>& values, std::size_t longest) {
+void PlacePermutations::draw(const std::vector<float>& values, std::size_t longest,
+                             const Progress& progress) {
   sums_.resize((longest + 1) * permutations_);
-  drawn_.resize(values.size());
+  drawn_.reserve(longest * permutations_);
   std::mt19937_64 random(kSeed);
   const auto below_1 = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   std::unordered_set<std::uint32_t> drawn;
   for (std::uint32_t permutation = 0; permutation < permutations_; ++permutation) {
+    if (progress.cancelled()) return;
     double sum = 0;
     drawn.clear();
     for (std::uint32_t count = 1; count <= longest; ++count) {
@@ -95,11 +102,12 @@ void PlacePermutations::draw(const std::vector<float>& values, std::size_t longe
       do {
         place = static_cast<std::uint32_t>(below_1() * number_);
       } while (!drawn.insert(place).second);
-      drawn_[place].push_back({permutation, count});
+      drawn_.push_back({place, permutation, count});
       sum += double{values[place]};
       sums_[count * permutations_ + permutation] = static_cast<float>(sum);
     }
   }
+  std::ranges::sort(drawn_);
 }
 
 std::pair<float, std::uint32_t> PlacePermutations::place_with(double value) const {
@@ -129,7 +137,7 @@ float PlacePermutations::chance(double sum, double neighbors, double own) const 
   std::uint32_t as_far = 1;
   for (std::size_t i = 0; i < permutations_; ++i) as_far += is_as_far(fewer[i], more[i]) ? 1 : 0;
   // A permutation with the place itself takes the next place instead.
-  for (const Drawn& drawn : drawn_[own_place]) {
+  for (const Drawn& drawn : std::ranges::equal_range(drawn_, own_place, {}, &Drawn::place)) {
     if (drawn.rank > whole + 1) continue;
     const std::size_t i = drawn.permutation;
     const auto without = [&](std::size_t count) {

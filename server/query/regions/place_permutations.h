@@ -1,11 +1,13 @@
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "core/progress.h"
 #include "query/regions/surface_values.h"
 
 namespace strata::query {
@@ -26,8 +28,9 @@ struct EqualPlaces {
 class PlacePermutations {
  public:
   // `areas` are those of the texels. `neighbors` is the largest number of neighbors of a place.
+  // Needs 12 bytes of memory per place. When cancelled, the chances have no meaning.
   PlacePermutations(const EqualPlaces& places, std::span<const float> areas, double neighbors,
-                    int permutations);
+                    int permutations, const Progress& progress);
 
   // Returns the pseudo p-value of a sum of the values of `neighbors` places: the share of the
   // permutations, including the given values, in which the sum is at least as far from its
@@ -39,10 +42,12 @@ class PlacePermutations {
  private:
   // An occurrence of a place in a permutation. The first place has the rank 1.
   struct Drawn {
-    std::uint32_t permutation = 0, rank = 0;
+    std::uint32_t place = 0, permutation = 0, rank = 0;
+    auto operator<=>(const Drawn&) const = default;
   };
-  std::vector<float> values_of_places(const EqualPlaces& places, std::span<const float> areas);
-  void draw(const std::vector<float>& values, std::size_t longest);
+  std::vector<float> values_of_places(const EqualPlaces& places, std::span<const float> areas,
+                                      const Progress& progress);
+  void draw(const std::vector<float>& values, std::size_t longest, const Progress& progress);
   // Returns the value and the number of the place whose value is nearest to `value`.
   std::pair<float, std::uint32_t> place_with(double value) const;
 
@@ -54,7 +59,7 @@ class PlacePermutations {
   // Of each permutation: the sums of the values of the first places. The sums of equally many
   // values are next to each other.
   std::vector<float> sums_;
-  std::vector<std::vector<Drawn>> drawn_;  // by place
+  std::vector<Drawn> drawn_;  // ascending, so those of a place are next to each other
 };
 
 }  // namespace strata::query

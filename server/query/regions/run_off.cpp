@@ -81,7 +81,7 @@ class Water {
       result.fallen += water[texel];
     });
     for (int visit = 0; visit < kMaxVisits; ++visit) {
-      auto later = STRATA_TRY(visit_texels(water, falls, result, progress));
+      auto later = STRATA_TRY(visit_texels(water, falls, result, visit, progress));
       double sum = 0;
       for (const auto& [texel, amount] : later) sum += amount;
       if (visit + 1 == kMaxVisits || sum <= kNegligible * result.fallen) {
@@ -147,11 +147,11 @@ class Water {
     return true;
   }
 
-  // Lets the water of each texel run down, from high to low. Returns the water that landed on
-  // texels that had been visited before.
+  // Lets the water of each texel run down, from high to low. Visits are counted from 0. Returns the
+  // water that landed on texels that had been visited before.
   using Landed = std::vector<std::pair<std::uint32_t, double>>;
   Result<Landed> visit_texels(std::vector<double>& water, const WaterFalls& falls, RunOff& result,
-                              Progress& progress) {
+                              int visit, Progress& progress) {
     Landed later;
     std::vector<std::uint64_t> visited(map_.block_of_slot.size(), 0);
     const auto fall = [&](std::uint32_t to, double amount, double& leaving) {
@@ -168,7 +168,8 @@ class Water {
     for (std::size_t left = order_.size(); left-- > 0;) {
       if (left % (1 << 18) == 0) {
         if (progress.cancelled()) return cancelled_problem();
-        progress.report(1 - 0.3 * double(left) / double(order_.size()), kRunning);
+        const double part = 1 - double(left) / double(order_.size());
+        progress.report(0.7 + 0.3 * (visit + part) / kMaxVisits, kRunning);
       }
       const std::uint32_t texel = order_[left];
       visited[texel / 64] |= std::uint64_t{1} << texel % 64;

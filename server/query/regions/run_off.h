@@ -61,7 +61,7 @@ Result<std::vector<std::uint64_t>> dripping_texels(
 //
 // Texels are visited once, from high to low. Where water lands on a texel that was visited before,
 // all texels are visited again, at most kMaxVisits times. The rest then counts as pooled: this is
-// water in caves without an outlet.
+// mostly water in caves without an outlet.
 //
 // Needs about 32 bytes of memory per texel of the map. Fails when cancelled.
 Result<RunOff> run_off(const SurfaceValues& rain, ValueType type, glm::dvec3 up,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "mesh/analysis/ray_scene.h"
@@ -75,11 +74,13 @@ std::uint32_t WaterFalls::landing(const glm::vec3& from, float least) const {
 }
 
 std::uint32_t WaterFalls::texel_near(glm::vec2 uv, const glm::vec3& at) const {
+  if (const auto own = mesh::surface_texel_at(*map_, uv)) return *own;
   const glm::ivec2 middle(glm::floor(uv * static_cast<float>(map_->resolution)));
-  // The texel can be one of the gutter. Texels of other charts can be near in the atlas.
+  // A narrow face can have no texel. Texels of other charts can be near in the atlas.
   constexpr int kReach = 2;
+  constexpr float kFar = 3;  // in texels
   std::uint32_t nearest = kNoNeighbour;
-  float least = std::numeric_limits<float>::infinity();
+  float least = kFar * texel_size_;
   for (int y = middle.y - kReach; y <= middle.y + kReach; ++y)
     for (int x = middle.x - kReach; x <= middle.x + kReach; ++x) {
       if (x < 0 || y < 0 || x >= map_->resolution || y >= map_->resolution) continue;

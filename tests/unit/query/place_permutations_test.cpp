@@ -70,7 +70,7 @@ TEST(PlacePermutations, give_the_chances_of_shuffled_values) {
   for (const std::size_t number : {std::size_t{60}, std::size_t{500}}) {
     const PlacesOfOneTexel texels(skewed_values(number));
     for (const std::size_t neighbors : {std::size_t{1}, std::size_t{4}, std::size_t{15}}) {
-      const PlacePermutations permutations(texels.places, texels.areas, 15, 9999);
+      const PlacePermutations permutations(texels.places, texels.areas, 15, 9999, Progress());
       const auto count = static_cast<double>(neighbors);
       for (const double off : {-1.5, -0.7, 0.1, 0.8, 1.6, 2.5}) {
         const double sum = count * texels.places.mean + off * std::sqrt(count);
@@ -84,7 +84,7 @@ TEST(PlacePermutations, give_the_chances_of_shuffled_values) {
 
 TEST(PlacePermutations, count_the_given_values_as_one_permutation) {
   const PlacesOfOneTexel texels(skewed_values(500));
-  const PlacePermutations permutations(texels.places, texels.areas, 8, 199);
+  const PlacePermutations permutations(texels.places, texels.areas, 8, 199, Progress());
   EXPECT_FLOAT_EQ(permutations.chance(1000, 8, 1), 1.0f / 200);
   EXPECT_FLOAT_EQ(permutations.chance(-1000, 7.5, 1), 1.0f / 200);
   EXPECT_EQ(permutations.chance(8 * texels.places.mean, 8, texels.places.mean), 1);
@@ -92,7 +92,7 @@ TEST(PlacePermutations, count_the_given_values_as_one_permutation) {
 
 TEST(PlacePermutations, of_parts_of_a_place_are_between_those_of_whole_places) {
   const PlacesOfOneTexel texels(skewed_values(500));
-  const PlacePermutations permutations(texels.places, texels.areas, 15, 9999);
+  const PlacePermutations permutations(texels.places, texels.areas, 15, 9999, Progress());
   // A sum of fewer values varies less, so the same distance is less likely.
   float before = 0;
   for (const double neighbors : {4.0, 4.5, 5.0, 5.5, 6.0, 9.0}) {
@@ -105,13 +105,13 @@ TEST(PlacePermutations, of_parts_of_a_place_are_between_those_of_whole_places) {
 
 TEST(PlacePermutations, are_1_without_neighbors_or_others) {
   const PlacesOfOneTexel texels(skewed_values(12));
-  const PlacePermutations permutations(texels.places, texels.areas, 11, 99);
+  const PlacePermutations permutations(texels.places, texels.areas, 11, 99, Progress());
   EXPECT_EQ(permutations.chance(50, 0, 1), 1);
   EXPECT_EQ(permutations.chance(50, 11, 1), 1);
   EXPECT_LT(permutations.chance(50, 6, 1), 0.05);
   PlacesOfOneTexel same(skewed_values(12));
   same.places.deviation = 0;
-  EXPECT_EQ(PlacePermutations(same.places, same.areas, 11, 99).chance(50, 4, 1), 1);
+  EXPECT_EQ(PlacePermutations(same.places, same.areas, 11, 99, Progress()).chance(50, 4, 1), 1);
 }
 
 TEST(PlacePermutations, do_not_shuffle_a_rare_value_of_the_place_itself) {
@@ -119,7 +119,7 @@ TEST(PlacePermutations, do_not_shuffle_a_rare_value_of_the_place_itself) {
     std::vector<double> values(static_cast<std::size_t>(number));
     std::fill_n(values.begin(), ones, 1);
     const PlacesOfOneTexel texels(values);
-    const PlacePermutations permutations(texels.places, texels.areas, 16, 9999);
+    const PlacePermutations permutations(texels.places, texels.areas, 16, 9999, Progress());
     for (const double found : {1, 2})
       EXPECT_NEAR(double{permutations.chance(found, 16, 1)}, by_shuffling(texels, found, 16), 0.015)
           << number << ' ' << found;
@@ -131,7 +131,7 @@ TEST(PlacePermutations, do_not_shuffle_an_outlier_of_the_place_itself) {
     std::vector<double> values = skewed_values(number);
     values.front() = 30;
     const PlacesOfOneTexel texels(values);
-    const PlacePermutations permutations(texels.places, texels.areas, 15, 9999);
+    const PlacePermutations permutations(texels.places, texels.areas, 15, 9999, Progress());
     for (const double sum : {8.0, 15.0, 20.0, 26.0})
       EXPECT_NEAR(double{permutations.chance(sum, 15, 30)}, by_shuffling(texels, sum, 15), 0.015)
           << number << ' ' << sum;

@@ -339,15 +339,28 @@ TEST(RunOff, ignores_amounts_that_are_no_rain) {
             0);
 }
 
-TEST(RunOff, can_be_cancelled) {
+// Is cancelled at a chosen check.
+class CancelledAtCheck final : public Progress {
+ public:
+  explicit CancelledAtCheck(int check) : left_(check) {}
+  bool cancelled() const override { return left_-- <= 0; }
+
+ private:
+  mutable int left_;
+};
+
+TEST(RunOff, can_be_cancelled_at_each_step) {
   const Surface surface = wall(kAtlases[0], 0);
   const WaterFalls falls = falls_of(surface);
-  Progress progress;
-  progress.cancel();
   const std::vector<std::uint64_t> none(surface.map.block_of_slot.size(), 0);
   const SurfaceValues dry{std::vector<std::uint32_t>(none.size() * 64), none};
-  EXPECT_FALSE(
-      run_off(dry, ValueType::f32, kUp, none, falls, surface.map, surface.graph, progress));
+  int checks = 0;
+  for (bool ended = false; !ended; ++checks) {
+    CancelledAtCheck progress(checks);
+    ended = run_off(dry, ValueType::f32, kUp, none, falls, surface.map, surface.graph, progress)
+                .has_value();
+  }
+  EXPECT_GE(checks, 3);  // while it floods, and while the water runs
 }
 
 }  // namespace
