@@ -156,7 +156,7 @@ def test_an_area_waits_for_review_on_a_reviewed_layer(server):
     server.ok(
         "POST",
         "/models/column/layers",
-        {"name": "Checked", "type": "u8", "resolution": 1024, "review": True},
+        {"name": "Checked", "type": "u8", "resolution": 2048, "review": True},
     )
     anna = server.add_person("anna", "annotator")
     answer = server.ok(

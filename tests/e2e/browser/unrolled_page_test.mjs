@@ -152,7 +152,7 @@ test("an area has clicked corners, and Escape discards it before it closes the d
   for (const corner of corners.slice(0, 2)) await click(corner);
   await ada.page.keyboard.press("Escape");
   await ada.page.keyboard.press("Enter");
-  assert.ok(await dialog(ada).isVisible());
+  assert.ok(await dialog(ada).getByRole("dialog").isVisible());
   for (const corner of corners) await click(corner);
   await shot(ada, "corners");
   await click(corners[0]);
@@ -169,13 +169,15 @@ test("the eraser removes an outline that was drawn in one go", async () => {
 });
 
 test("an enlarged picture has more pixels, and can be painted", async () => {
+  await radio(ada, words.tools.brush).click();
   await dialog(ada).getByRole("checkbox", { name: words.areas.erases, exact: true }).uncheck();
   const width = () => picture(ada).evaluate((img) => img.naturalWidth);
   const before = await width();
   await radio(ada, "2 ×").click();
   await wait_for(async () => (await width()) > 1.9 * before, "a larger picture");
-  await radio(ada, words.tools.brush).click();
-  const box = await dialog(ada).locator("strata-rollout-canvas").boundingBox();
+  const canvas = dialog(ada).locator("strata-rollout-canvas");
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox();
   await ada.page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
   await shown(ada, (thirds) => thirds[0] + thirds[1] > 20, "the dab");
   await shot(ada, "enlarged");

@@ -88,6 +88,7 @@ export class StrataRolloutDialog extends LitElement {
         gap: var(--space-2) var(--space-4);
       }
       .painting .width {
+        display: inline-block;
         width: 5.5rem;
       }
     `,
