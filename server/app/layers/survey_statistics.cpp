@@ -119,24 +119,23 @@ bool has_mean(const SurveyLayer& layer) {
 
 void add_value_columns(std::vector<SurveyColumn>& columns, bool with_quantiles) {
   using query::Statistics;
-  static constexpr std::array<std::pair<const char*, double Statistics::*>, 5> kValues = {{
-      {"mean", &Statistics::mean},
-      {"min", &Statistics::min},
-      {"max", &Statistics::max},
-      {"std", &Statistics::std},
-      {"root_mean_square", &Statistics::root_mean_square},
-  }};
-  for (const auto& [name, member] : kValues)
-    columns.push_back({name, [member = member](const SurveyLayer& layer) {
+  const auto add = [&](const char* name, double Statistics::*member) {
+    columns.push_back({name, [member](const SurveyLayer& layer) {
                          return has_mean(layer) ? SheetCell(layer.statistics.*member) : SheetCell();
                        }});
-  if (!with_quantiles) return;
-  for (std::size_t i = 0; i < query::kQuantiles.size(); ++i)
+  };
+  add("mean", &Statistics::mean);
+  add("min", &Statistics::min);
+  add("max", &Statistics::max);
+  add("std", &Statistics::std);
+  for (std::size_t i = 0; with_quantiles && i < query::kQuantiles.size(); ++i)
     columns.push_back({query::kQuantileNames[i], [i](const SurveyLayer& layer) {
                          const auto& quantiles = layer.statistics.quantiles;
                          return has_mean(layer) && quantiles ? SheetCell((*quantiles)[i])
                                                              : SheetCell();
                        }});
+  // Last, because scripts of earlier releases can read the others by their position.
+  add("root_mean_square", &Statistics::root_mean_square);
 }
 
 // Returns the names of all classes. Classes of different surveys have the same meaning if they have
