@@ -49,6 +49,17 @@ const shown = (who, is_so, what) =>
     return is_so(thirds) ? thirds : null;
   }, what);
 
+/** Paints a dab on the left, which must be the only edit since `before`, and undoes it. */
+async function paint_only_a_dab(who, before) {
+  await drag(who, [0.15, 0.5]);
+  // The page sends edits in the order of drawing, so an earlier one is already saved.
+  const [, middle] = await shown(who, ([left]) => left > 0, "the dab");
+  assert.equal(middle, 0);
+  assert.equal(await edits(), before + 1);
+  await dialog(who).getByRole("button", { name: words.model.undo, exact: true }).click();
+  await shown(who, (thirds) => Math.max(...thirds) === 0, "a picture without paint");
+}
+
 /** Returns a place of the picture, as shares of its width and height, on the page. */
 async function place(who, [x, y]) {
   await picture(who).scrollIntoViewIfNeeded();
@@ -128,7 +139,18 @@ test("a wrong width stays at its field", async () => {
   const before = await edits();
   await drag(ada, [0.4, 0.5], [0.6, 0.5]);
   await dialog(ada).locator('[name="width"]').fill("12");
-  assert.equal(await edits(), before);
+  await paint_only_a_dab(ada, before);
+});
+
+test("Escape cancels a stroke and does not close the dialog", async () => {
+  const before = await edits();
+  await ada.page.mouse.move(...(await place(ada, [0.4, 0.5])));
+  await ada.page.mouse.down();
+  await ada.page.mouse.move(...(await place(ada, [0.5, 0.5])), { steps: 4 });
+  await ada.page.keyboard.press("Escape");
+  await ada.page.mouse.move(...(await place(ada, [0.6, 0.5])), { steps: 4 });
+  await ada.page.mouse.up();
+  await paint_only_a_dab(ada, before);
 });
 
 test("a stroke at one end of the picture continues at the other end", async () => {

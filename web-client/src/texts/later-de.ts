@@ -39,6 +39,7 @@ export const laterTexts = {
     move: "Verschieben",
     area: "Fläche",
     zoom: "Zoom",
+    paint_on: "Auf die abgerollte Oberfläche malen",
     brush_hint: "Ziehen Sie über das Bild.",
     area_hint:
       "Klicken Sie die Ecken an, oder zeichnen Sie einen Umriss. Ein Klick auf die erste Ecke oder die Eingabetaste schließt die Fläche. Die Rücktaste entfernt die letzte Ecke, Escape bricht ab.",

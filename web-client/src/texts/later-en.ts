@@ -38,6 +38,7 @@ export const laterTexts = {
     move: "Move",
     area: "Area",
     zoom: "Zoom",
+    paint_on: "Paint on the unrolled surface",
     brush_hint: "Drag on the picture.",
     area_hint:
       "Click the corners, or draw an outline. Click the first corner or press Enter to close the area. Backspace removes the last corner, Escape cancels.",

@@ -39,6 +39,7 @@ export const laterTexts = {
     move: "Desplazar",
     area: "Área",
     zoom: "Zoom",
+    paint_on: "Pintar en la superficie desarrollada",
     brush_hint: "Arrastre sobre la imagen.",
     area_hint:
       "Haga clic en las esquinas o dibuje un contorno. Un clic en la primera esquina o la tecla Intro cierran el área. Retroceso quita la última esquina, Escape cancela.",

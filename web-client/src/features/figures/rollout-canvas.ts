@@ -2,7 +2,7 @@
 // or areas. Its event `drawn` contains a finished part. Drawn parts stay visible over the picture
 // while they are in `waiting`.
 
-import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import type { RolloutSheet, SheetPoint } from "../../core/protocol.gen";
 import { sharedStyles } from "../../ui/styles";
@@ -10,6 +10,7 @@ import { texts } from "../../texts";
 import {
   sheetBox,
   SheetDrawing,
+  type DrawnPart,
   type SheetBox,
   type SheetPart,
   type SheetTool,
@@ -26,8 +27,8 @@ export class StrataRolloutCanvas extends LitElement {
   @property({ attribute: false }) mmPerPixel = 1;
   @property() tool: SheetTool = "move";
   @property({ attribute: false }) radiusMm = 1;
-  @property({ attribute: false }) waiting: readonly SheetPart[] = [];
-  /** The color of drawn parts; null for parts that erase. */
+  @property({ attribute: false }) waiting: readonly DrawnPart[] = [];
+  /** The color of the open stroke. Null if it erases. */
   @property({ attribute: false }) color: string | null = null;
   /** Whether the picture has its own size, and is scrolled. */
   @property({ type: Boolean, reflect: true }) zoomed = false;
@@ -87,11 +88,16 @@ export class StrataRolloutCanvas extends LitElement {
     `,
   ];
 
-  /** Whether an unfinished area was discarded. */
-  discard(): boolean {
-    const hadCorners = this._drawing.hasCorners;
+  /** Discards the unfinished stroke or area. */
+  discard(): void {
     this._drawing.discard();
-    return hadCorners;
+  }
+
+  override willUpdate(changed: PropertyValues): void {
+    // A picture of the same place has the same size, so the user can continue to draw.
+    if (!changed.has("sheet") && !changed.has("mmPerPixel")) return;
+    this._size = [0, 0]; // unknown until the new picture is loaded
+    this._drawing.cancelPress();
   }
 
   override render(): TemplateResult {
@@ -100,7 +106,7 @@ export class StrataRolloutCanvas extends LitElement {
         class="sheet ${draws ? "draws" : ""}"
         tabindex=${draws ? 0 : nothing}
         role=${draws ? "application" : nothing}
-        aria-label=${draws ? texts.rollouts.alt : nothing}
+        aria-label=${draws ? texts.rollouts.paint_on : nothing}
         @pointerdown=${this.onDown}
         @pointermove=${this.onMove}
         @pointerup=${this.onUp}
@@ -109,7 +115,7 @@ export class StrataRolloutCanvas extends LitElement {
         @keydown=${this.onKey}
         @dragstart=${(event: Event) => event.preventDefault()}
       >
-        <img src=${this.picture} alt=${texts.rollouts.alt} @load=${this.onLoad} />
+        <img src=${this.picture} alt=${draws ? "" : texts.rollouts.alt} @load=${this.onLoad} />
         ${this._size[0] > 0 ? this.overlay() : nothing}
       </div>`;
   }
@@ -118,14 +124,14 @@ export class StrataRolloutCanvas extends LitElement {
     const { left, top, width, height } = this.box;
     const { path } = this._drawing;
     const snap = kSnapPx * this.mmPerCssPixel();
-    const open: readonly SheetPart[] =
+    const open: readonly DrawnPart[] =
       path.length > 0 && this.tool === "brush"
-        ? [{ strokes: [{ path, radius_mm: this.radiusMm }] }]
+        ? [{ part: { strokes: [{ path, radius_mm: this.radiusMm }] }, color: this.color }]
         : [];
     const points = pointsOf(path);
     // y points up on the sheet, and down in SVG.
     return html`<svg aria-hidden="true" preserveAspectRatio="none" viewBox="${left} ${-top} ${width} ${height}">
-      ${[...this.waiting, ...open].map((part) => this.shape(part))}
+      ${[...this.waiting, ...open].map(shapeOf)}
       ${
         this._drawing.hasCorners
           ? svg`<polyline points=${points} fill="none" stroke="var(--mark-dark)" stroke-width=${snap * 0.3} />
@@ -139,12 +145,6 @@ export class StrataRolloutCanvas extends LitElement {
           : nothing
       }
     </svg>`;
-  }
-
-  private shape(part: SheetPart): TemplateResult {
-    const color = this.color ?? "var(--mark-light)";
-    return svg`${"polygons" in part ? part.polygons!.map((path) => svg`<polygon points=${pointsOf(path)} fill=${color} fill-rule="evenodd" opacity="0.7" />`) : nothing}
-      ${"strokes" in part ? part.strokes!.map(({ path, radius_mm: radius }) => svg`<polyline points=${pointsOf([path[0]!, ...path])} fill="none" stroke=${color} stroke-width=${2 * radius} stroke-linecap="round" stroke-linejoin="round" opacity="0.7" />`) : nothing}`;
   }
 
   private get box(): SheetBox {
@@ -189,17 +189,26 @@ export class StrataRolloutCanvas extends LitElement {
   }
 
   private onCancel(event: PointerEvent): void {
-    if (event.isPrimary) this._drawing.discard();
+    if (event.isPrimary) this._drawing.cancelPress();
   }
 
   private onKey(event: KeyboardEvent): void {
-    if (!this._drawing.hasCorners) return;
-    if (event.key === "Enter") this._drawing.finish();
-    else if (event.key === "Backspace") this._drawing.removeCorner();
+    const { _drawing: drawing } = this;
+    if (event.key === "Escape") {
+      if (!drawing.discard()) return; // closes the dialog
+    } else if (!drawing.hasCorners) return;
+    else if (event.key === "Enter") drawing.finish();
+    else if (event.key === "Backspace") drawing.removeCorner();
     else return;
     event.preventDefault();
     event.stopPropagation();
   }
+}
+
+function shapeOf({ part, color: own }: DrawnPart): TemplateResult {
+  const color = own ?? "var(--mark-light)";
+  return svg`${"polygons" in part ? part.polygons!.map((path) => svg`<polygon points=${pointsOf(path)} fill=${color} fill-rule="evenodd" opacity="0.7" />`) : nothing}
+    ${"strokes" in part ? part.strokes!.map(({ path, radius_mm: radius }) => svg`<polyline points=${pointsOf([path[0]!, ...path])} fill="none" stroke=${color} stroke-width=${2 * radius} stroke-linecap="round" stroke-linejoin="round" opacity="0.7" />`) : nothing}`;
 }
 
 const pointsOf = (path: readonly (readonly number[])[]): string =>

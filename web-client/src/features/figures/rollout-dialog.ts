@@ -31,7 +31,7 @@ import {
   wrongField,
   type RolloutInput,
 } from "./rollout-request";
-import type { SheetPart, SheetTool } from "./sheet-drawing";
+import { isSameSheet, type SheetPart, type SheetTool } from "./sheet-drawing";
 import { SheetPainting } from "./sheet-painting";
 
 const words = texts.rollouts;
@@ -108,7 +108,7 @@ export class StrataRolloutDialog extends LitElement {
       redraw: () => this.draw(),
       changed: () => this.requestUpdate(),
     });
-    if (wrongField(this._input) === null) void this.draw();
+    if (wrongField(this._input) === null) void this._painting.redraw();
   }
 
   override disconnectedCallback(): void {
@@ -122,7 +122,7 @@ export class StrataRolloutDialog extends LitElement {
     const { model } = this.session;
     const isWrong = wrongField(input) !== null;
     const change = (next: RolloutInput): void => this.change(next);
-    return html`<strata-dialog broad heading=${words.title} .mayClose=${this.mayClose} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog broad heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p>${words.lead}</p>
       <form id="rollout" novalidate @submit=${this.onSubmit}>
         ${model ? rolloutFields(input, model, change) : nothing}
@@ -151,7 +151,7 @@ export class StrataRolloutDialog extends LitElement {
               .waiting=${this._painting.waiting}
               .color=${this.color}
               ?zoomed=${this._zoom > 1}
-              @drawn=${(event: CustomEvent<SheetPart>) => this._painting.paint(shown.sheet, event.detail)}
+              @drawn=${(event: CustomEvent<SheetPart>) => this._painting.paint(shown.sheet, { part: event.detail, color: this.color })}
             ></strata-rollout-canvas>`
           : nothing
       }
@@ -188,6 +188,7 @@ export class StrataRolloutDialog extends LitElement {
                 name: "width",
                 min: 0.1,
                 wrong: isWrong,
+                toldAt: "wrong-width",
                 typed: (text) => (this._width = text),
               })}</span></label>`
             : nothing
@@ -208,8 +209,8 @@ export class StrataRolloutDialog extends LitElement {
                 <button class="icon quiet" ?disabled=${!layer} title=${texts.model.redo} aria-label=${texts.model.redo} @click=${() => layer && painting.redo(layer)}>${icon("redo")}</button>`
         }
       </div>
-      ${isWrong ? html`<p class="error" role="alert">${words.wrong_width}</p>` : nothing}
-      ${tool === "move" ? nothing : html`<p class="hint" id="paints">${this.paints} ${tool === "area" ? words.area_hint : words.brush_hint}</p>`}`;
+      ${isWrong ? html`<p class="error" id="wrong-width" role="alert">${words.wrong_width}</p>` : nothing}
+      ${tool === "move" ? nothing : html`<p class="hint">${this.paints} ${tool === "area" ? words.area_hint : words.brush_hint}</p>`}`;
   }
 
   /** What the tools paint on which layer. */
@@ -248,11 +249,8 @@ export class StrataRolloutDialog extends LitElement {
   private zoom(zoom: (typeof kZooms)[number]): void {
     if (zoom === this._zoom) return;
     this._zoom = zoom;
-    void this.draw();
+    void this._painting.redraw();
   }
-
-  /** Escape first discards an unfinished area. */
-  private readonly mayClose = (): Promise<boolean> => Promise.resolve(!this._canvas?.discard());
 
   private fitted(sheet: RolloutSheet): string {
     const mmPerUnit = sheet.mm_per_pixel / sheet.units_per_pixel;
@@ -276,7 +274,7 @@ export class StrataRolloutDialog extends LitElement {
     this._canvas?.discard();
     this._painting.leaveSheet();
     if (wrongField(this._input) === null)
-      this._timer = window.setTimeout(() => void this.draw(), kWaitMs);
+      this._timer = window.setTimeout(() => void this._painting.redraw(), kWaitMs);
   }
 
   private stop(): void {
@@ -314,7 +312,13 @@ export class StrataRolloutDialog extends LitElement {
         signal: asked.signal,
       });
       if (asked !== this._asked) return false;
-      this._shown = { sheet, pixelMm: preview.mm_per_pixel };
+      const last = this._shown?.sheet;
+      const isSame = last !== undefined && isSameSheet(last, sheet);
+      if (!isSame) {
+        this._canvas?.discard();
+        this._painting.leaveSheet();
+      }
+      this._shown = { sheet: isSame ? last : sheet, pixelMm: preview.mm_per_pixel };
       this.show(URL.createObjectURL(picture));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

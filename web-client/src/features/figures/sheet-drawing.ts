@@ -3,10 +3,15 @@
 
 import type { RolloutSheet, SheetPoint, Unrolled, Within } from "../../core/protocol.gen";
 
-
 export type SheetTool = "move" | "brush" | "area";
 /** A finished stroke or area. */
 export type SheetPart = Pick<Unrolled, "polygons"> | Pick<Unrolled, "strokes">;
+
+/** A finished part, and the color in which it is drawn. The color is null for parts that erase. */
+export interface DrawnPart {
+  part: SheetPart;
+  color: string | null;
+}
 
 /** Where a picture of the sheet is on the sheet, in millimeters. */
 export interface SheetBox {
@@ -47,17 +52,21 @@ export function sheetBox(
   };
 }
 
+/** Whether two responses describe the same sheet, so that parts of one belong to the other. */
+export const isSameSheet = (a: RolloutSheet, b: RolloutSheet): boolean =>
+  JSON.stringify(a) === JSON.stringify(b);
+
 /**
  * Returns the area of a part in the contract's format, on the sheet of a response. The fitted values
  * are fixed, so the sheet stays the same.
  */
 export function withinSheet(sheet: RolloutSheet, part: SheetPart): Within {
-  const { axis, radius, half_angle, side, from, to } = sheet;
+  const { axis, radius, side, from, to } = sheet;
   return {
     unrolled: {
       axis,
       radius,
-      ...(sheet.shape === "cone" ? { half_angle } : {}),
+      ...(sheet.shape === "cone" ? { half_angle: sheet.half_angle } : {}),
       side,
       // The middle of the gap, or the end of a wall that goes all around.
       cut: ((from + to) / 2 + 180) % 360,
@@ -126,16 +135,28 @@ export class SheetDrawing {
     );
   }
 
-  /** Removes the last corner. */
+  /** Removes the last corner, unless the pointer is drawing. */
   removeCorner(): void {
+    if (this._isDown) return;
     this.path = this.path.slice(0, -1);
     this._host.changed();
   }
 
-  discard(): void {
+  /** Discards what was drawn since the pointer was pressed. Earlier corners stay. */
+  cancelPress(): void {
+    if (!this._isDown) return;
+    this._isDown = false;
+    this.path = this.path.slice(0, this._from);
+    this._host.changed();
+  }
+
+  /** Discards the unfinished part. Returns whether there was one. */
+  discard(): boolean {
+    const isOpen = this.path.length > 0;
     this.path = [];
     this._isDown = false;
     this._host.changed();
+    return isOpen;
   }
 
   private add(point: SheetPoint): void {

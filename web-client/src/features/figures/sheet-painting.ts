@@ -3,7 +3,7 @@
 import type { RolloutSheet } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
 import type { Api } from "../../net/api";
-import { withinSheet, type SheetPart } from "./sheet-drawing";
+import { withinSheet, type DrawnPart, type SheetPart } from "./sheet-drawing";
 
 /** A layer, and what an edit does in it. */
 export interface SheetTarget {
@@ -26,18 +26,18 @@ export interface SheetPaintingHost {
 export class SheetPainting {
   erases = false;
   /** The parts that the picture does not show yet. */
-  waiting: readonly SheetPart[] = [];
+  waiting: readonly DrawnPart[] = [];
   private readonly _edits: (() => Promise<void>)[] = [];
   private readonly _made = new Set<SheetPart>();
   private _isSending = false;
 
   constructor(private readonly _host: SheetPaintingHost) {}
 
-  /** Paints or erases a part of this sheet. */
-  paint(sheet: RolloutSheet, part: SheetPart): void {
+  /** Paints or erases a part of this sheet. The part keeps its color while it is waiting. */
+  paint(sheet: RolloutSheet, { part, color }: DrawnPart): void {
     const target = this._host.target(this.erases);
     if (!target) return;
-    this.waiting = [...this.waiting, part];
+    this.waiting = [...this.waiting, { part, color }];
     const { api, modelId: model } = this._host;
     this.add(async () => {
       const body = {
@@ -72,11 +72,18 @@ export class SheetPainting {
 
   /** Forgets the parts of an earlier sheet. They are still sent. */
   leaveSheet(): void {
-    this.forget(this.waiting);
+    this.forget(this.waiting.map(({ part }) => part));
+  }
+
+  /** Draws the picture again, and forgets the parts that it then shows. */
+  async redraw(): Promise<void> {
+    const made = [...this._made];
+    if (await this._host.redraw()) this.forget(made);
+    this._host.changed();
   }
 
   private forget(parts: readonly SheetPart[]): void {
-    this.waiting = this.waiting.filter((part) => !parts.includes(part));
+    this.waiting = this.waiting.filter(({ part }) => !parts.includes(part));
     for (const part of parts) this._made.delete(part);
   }
 
@@ -96,8 +103,6 @@ export class SheetPainting {
       }
     }
     this._isSending = false;
-    const made = [...this._made];
-    if (await this._host.redraw()) this.forget(made);
-    this._host.changed();
+    await this.redraw();
   }
 }

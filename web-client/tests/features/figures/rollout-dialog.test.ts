@@ -1,6 +1,9 @@
 import { describe, expect, it } from "vitest";
 import type { TemplateResult } from "lit";
+import type { RolloutSheet } from "../../../src/core/protocol.gen";
 import { StrataRolloutDialog } from "../../../src/features/figures/rollout-dialog";
+import { kNewRollout } from "../../../src/features/figures/rollout-request";
+import type { SheetPainting } from "../../../src/features/figures/sheet-painting";
 import type { ModelSession } from "../../../src/session/model-session";
 
 /** Fires an event of the outermost element of a template. */
@@ -17,5 +20,47 @@ describe("the dialog for rollouts", () => {
     dialog.addEventListener("closed", () => ++closed);
     fire(dialog.render(), "closed");
     expect(closed).toBe(1);
+  });
+
+  it("discards parts on another sheet, but not on a new picture of the same sheet", async () => {
+    let radius = 40;
+    let discarded = 0;
+    const dialog = new StrataRolloutDialog();
+    dialog.session = {
+      model: { bounds: { min: [0, 0, 0], max: [1, 1, 1] }, up: "z" },
+      modelId: "pot",
+      figures: { draft: { rollout: kNewRollout } },
+      painting: {
+        brush: { width: { mm: 5 } },
+        areaTarget: () => ({ layer: { id: 7 }, paint: {} }),
+      },
+      views: { content: () => ({}) },
+      api: {
+        json: (call: string) =>
+          call === "POST /models/{model}/rollout"
+            ? Promise.resolve({ axis: {}, radius, width: 100, height: 100, mm_per_pixel: 1 })
+            : new Promise(() => {}), // the edit takes long
+        blob: () => Promise.resolve(new Blob()),
+      },
+    } as unknown as ModelSession;
+    // Without a page, the dialog is not rendered.
+    Object.defineProperties(dialog, {
+      isConnected: { value: true },
+      scheduleUpdate: { value: () => {} },
+      renderRoot: { value: { querySelector: () => ({ discard: () => ++discarded }) } },
+    });
+    dialog.connectedCallback();
+    const { _painting: painting } = dialog as unknown as { _painting: SheetPainting };
+    await painting.redraw();
+    painting.paint({} as RolloutSheet, {
+      part: { strokes: [{ path: [[0, 0]], radius_mm: 1 }] },
+      color: null,
+    });
+    const before = discarded;
+    await painting.redraw();
+    expect([discarded - before, painting.waiting.length]).toEqual([0, 1]);
+    radius = 41;
+    await painting.redraw();
+    expect([discarded - before, painting.waiting.length]).toEqual([1, 0]);
   });
 });

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { RolloutSheet } from "../../../src/core/protocol.gen";
 import {
+  isSameSheet,
   sheetBox,
   SheetDrawing,
   withinSheet,
@@ -50,6 +51,18 @@ describe("a picture of a sheet", () => {
     expect(box.left).toBeCloseTo(-125.7, 6);
     expect(box.top).toBeCloseTo(40, 6);
     expect([box.width, box.height]).toEqual([252, 80]);
+  });
+});
+
+describe("two sheets", () => {
+  it("are the same if all values are", () => {
+    expect(isSameSheet(kSheet, structuredClone(kSheet))).toBe(true);
+    expect(isSameSheet(kSheet, { ...kSheet, side: "inside" })).toBe(false);
+    const moved = {
+      ...kSheet,
+      axis: { ...kSheet.axis, point: [0, 0, 41] as [number, number, number] },
+    };
+    expect(isSameSheet(kSheet, moved)).toBe(false);
   });
 });
 
@@ -113,7 +126,8 @@ describe("the brush on a sheet", () => {
   it("does not draw with a canceled pointer or without a tool", () => {
     const { drawing, parts } = drawingOf("brush");
     drawing.down([0, 0]);
-    drawing.discard();
+    drawing.cancelPress();
+    expect(drawing.path).toEqual([]);
     drawing.move([[9, 9]]);
     drawing.up();
     const idle = drawingOf("move");
@@ -148,6 +162,39 @@ describe("areas on a sheet", () => {
     click(drawing, 30, 30);
     drawing.finish();
     expect(parts).toEqual([{ polygons: [[...corners.slice(0, 2), [30, 30]]] }]);
+  });
+
+  it("keep their corners while the pointer is down", () => {
+    const { drawing } = drawingOf("area");
+    click(drawing, 0, 0);
+    drawing.down([20, 0]);
+    for (let i = 0; i < 3; ++i) drawing.removeCorner();
+    drawing.move([[20, 1]]);
+    drawing.up();
+    expect(drawing.path).toEqual(corners.slice(0, 2));
+    drawing.removeCorner();
+    expect(drawing.path).toEqual(corners.slice(0, 1));
+  });
+
+  it("keep their earlier corners if the pointer is canceled", () => {
+    const { drawing, parts } = drawingOf("area");
+    for (const [x, y] of corners.slice(0, 2)) click(drawing, x, y);
+    drawing.down([20, 20]);
+    drawing.move([[30, 40]]);
+    drawing.cancelPress();
+    drawing.move([[50, 50]]);
+    drawing.up();
+    drawing.cancelPress();
+    expect(drawing.path).toEqual(corners.slice(0, 2));
+    expect(parts).toEqual([]);
+  });
+
+  it("can be discarded once", () => {
+    const { drawing } = drawingOf("area");
+    expect(drawing.discard()).toBe(false);
+    click(drawing, 0, 0);
+    expect(drawing.discard()).toBe(true);
+    expect(drawing.discard()).toBe(false);
   });
 
   it("can be drawn as an outline, which closes itself", () => {

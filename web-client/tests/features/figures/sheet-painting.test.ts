@@ -3,7 +3,7 @@ import type { RolloutSheet } from "../../../src/core/protocol.gen";
 import type { Layer } from "../../../src/core/types";
 import type { Api } from "../../../src/net/api";
 import { SheetPainting } from "../../../src/features/figures/sheet-painting";
-import type { SheetPart } from "../../../src/features/figures/sheet-drawing";
+import type { DrawnPart } from "../../../src/features/figures/sheet-drawing";
 
 const layer = { id: 7 } as Layer;
 const sheet = {
@@ -14,7 +14,10 @@ const sheet = {
   from: -180,
   to: 180,
 } as unknown as RolloutSheet;
-const dab = (x: number): SheetPart => ({ strokes: [{ path: [[x, 0]], radius_mm: 1 }] });
+const dab = (x: number, color = "red"): DrawnPart => ({
+  part: { strokes: [{ path: [[x, 0]], radius_mm: 1 }] },
+  color,
+});
 
 /** A server whose responses the test gives. */
 class FakeServer {
@@ -68,7 +71,7 @@ describe("painting on a sheet", () => {
         path: { model: "pot" },
         body: {
           within: {
-            unrolled: { axis: sheet.axis, radius: 40, side: "inside", cut: 180, ...first },
+            unrolled: { axis: sheet.axis, radius: 40, side: "inside", cut: 180, ...first.part },
           },
           into: { layer: 7, value: 3 },
         },
@@ -101,6 +104,27 @@ describe("painting on a sheet", () => {
     server.answers[1]!.give(undefined);
     await settled();
     expect(painting.waiting).toEqual([]);
+  });
+
+  it("forgets parts that a redraw for another reason shows", async () => {
+    const server = new FakeServer();
+    const { painting } = server;
+    server.isShown = false;
+    painting.paint(sheet, dab(1));
+    server.answers[0]!.give({});
+    await settled();
+    painting.paint(sheet, dab(2));
+    server.isShown = true;
+    await painting.redraw();
+    expect(painting.waiting).toEqual([dab(2)]);
+    expect(server.redraws).toBe(2);
+  });
+
+  it("keeps the color in which each part was drawn", () => {
+    const { painting } = new FakeServer();
+    painting.paint(sheet, dab(1, "red"));
+    painting.paint(sheet, dab(2, "blue"));
+    expect(painting.waiting.map(({ color }) => color)).toEqual(["red", "blue"]);
   });
 
   it("forgets a refused part, and sends the next one", async () => {
