@@ -112,7 +112,9 @@ class Hand {
 }
 
 const length_of = (points) =>
-  points.slice(1).reduce((sum, [x, y], i) => sum + Math.hypot(x - points[i][0], y - points[i][1]), 0);
+  points
+    .slice(1)
+    .reduce((sum, [x, y], i) => sum + Math.hypot(x - points[i][0], y - points[i][1]), 0);
 
 // --- what the hand sees: the pixels of the stain
 
@@ -183,7 +185,13 @@ async function by_brush(hand, seen) {
   const step = 0.7 * kFillWidth_px;
   for (let row = step / 2; row < seen.height; row += step)
     for (const [from, to] of seen.spans(row, kFillWidth_px / 2 + 2)) {
-      await hand.draw([[from, row], [to, row]], kFillWidth_px);
+      await hand.draw(
+        [
+          [from, row],
+          [to, row],
+        ],
+        kFillWidth_px,
+      );
     }
   // the rest between the rim and the rows
   await hand.fill(width, "20");
@@ -207,7 +215,10 @@ async function by_strokes(hand, seen) {
 async function by_wand(hand, seen) {
   await hand.key("Shift+G");
   await hand.click(hand.page.getByRole("radio", { name: words.wand.ways.value, exact: true }));
-  await hand.choose(hand.page.getByRole("combobox", { name: words.wand.layer, exact: true }), "Moisture");
+  await hand.choose(
+    hand.page.getByRole("combobox", { name: words.wand.layer, exact: true }),
+    "Moisture",
+  );
   await hand.press(seen.center);
   await hand.wait(() => selected(hand.page));
   await hand.key("Enter");
@@ -249,7 +260,12 @@ const done = (job) =>
 async function import_scan() {
   const name = `scan${extname(file)}`;
   const query = `filename=${name}&unit=${unit}&up=${up}&name=Scan`;
-  const answer = await bytes("POST", `/models?${query}`, readFileSync(file), "application/octet-stream");
+  const answer = await bytes(
+    "POST",
+    `/models?${query}`,
+    readFileSync(file),
+    "application/octet-stream",
+  );
   await done(await answer.json());
   await server.json("PATCH", kModel, { scale_verified: true });
 }
@@ -308,7 +324,10 @@ async function run(name, work, seen) {
   await browser.rested();
   if (process.env.STRATA_TEST_OUTPUT)
     await browser.page.screenshot({
-      path: join(process.env.STRATA_TEST_OUTPUT, `task_${basename(file, extname(file))}_${slug}.png`),
+      path: join(
+        process.env.STRATA_TEST_OUTPUT,
+        `task_${basename(file, extname(file))}_${slug}.png`,
+      ),
     });
   const both = await area_m2(`truth = 1 and valid("${slug}")`),
     any = await area_m2(`truth = 1 or valid("${slug}")`);
