@@ -200,7 +200,7 @@ test("driving rain needs the wind rose, the wind and the rain", async () => {
   await page.getByLabel(wind_shares.label).fill("10 8 6 8 14 28 18 8");
   await page.getByLabel(wind_speed_m_s.label).fill("4.5");
   await page.locator('input[name="rain_mm"]').fill("760");
-  await page.getByLabel(words.shape.sun.north.label).fill("20");
+  await page.locator('input[name="north"]').fill("20");
   await keep_picture("rain-dialog");
   await button(words.layer_dialog.compute).click();
   await button(words.layers.select(title)).waitFor();
