@@ -574,7 +574,10 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       name: "areas of measurements",
       start: async () => {
         await of_layer("Moisture", w.layers.statistics)();
-        await page.locator("strata-statistics-dialog").getByText(w.statistics.mean).waitFor();
+        await page
+          .locator("strata-statistics-dialog")
+          .getByText(w.statistics.mean, { exact: true })
+          .waitFor();
       },
       end: close_dialog,
       keyboard: true,
