@@ -261,13 +261,15 @@ export class StrataStatisticsDialog extends LitElement {
     );
   }
 
-  /** Returns the damage indices, if the values can be ratings: keys of records are not. */
+  /** Returns the damage indices, if the values can be ratings: small numbers, and not keys. */
   private damageIndices({
+    keys,
     mean,
     root_mean_square: rootMeanSquare,
   }: Statistics): [string, number][] {
     const words = texts.statistics.damage_index;
-    return this.layer.kind === "database" || mean === undefined || rootMeanSquare === undefined
+    const isRating = this.layer.kind !== "database" && keys?.every(({ key }) => key <= kMostRating);
+    return !isRating || mean === undefined || rootMeanSquare === undefined
       ? []
       : [
           [words.linear, mean],
@@ -381,6 +383,8 @@ export class StrataStatisticsDialog extends LitElement {
     }
   }
 }
+
+const kMostRating = 10;
 
 /** Sorts by area, with the largest first. */
 const sorted = (statistics: Statistics): KeyStatistics[] =>
