@@ -45,7 +45,7 @@ void SheetArea::sort_into_cells() {
     for (std::uint32_t cell = 0; cell < kSide * kSide; ++cell) {
       if (is_covered_[cell] != 0) continue;
       const glm::dvec2 center =
-          strokes_low_ + cell_size_ * glm::dvec2(cell % kSide + 0.5, cell / kSide + 0.5);
+          strokes_low_ + cell_size_ * (glm::dvec2(glm::uvec2(cell % kSide, cell / kSide)) + 0.5);
       const double distance = segment.distance(center);
       if (distance > segment.radius + to_corner) continue;
       if (distance <= segment.radius - to_corner) {

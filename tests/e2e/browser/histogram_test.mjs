@@ -109,10 +109,12 @@ test("classes of ratings have damage indices", async ({ server, page }) => {
   assert.ok(Math.abs(mean - linear) < 1e-9, `${mean}, ${linear}`);
   assert.ok(Math.abs(root_mean_square - progressive) < 1e-9, `${root_mean_square}`);
 
-  await page.keyboard.press("Escape");
+  const dialog = page.locator("strata-statistics-dialog");
+  await dialog.getByRole("button", { name: w.close, exact: true }).click();
+  await dialog.waitFor({ state: "detached" });
   await page.getByRole("button", { name: w.layers.options("Ratings") }).click();
   await page.getByRole("menuitem", { name: w.layers.statistics }).click();
-  const shown = page.locator("strata-statistics-dialog dl");
+  const shown = dialog.locator("dl");
   await shown.getByText(w.statistics.damage_index.progressive).waitFor();
   const numbers = await shown.locator("dd").allTextContents();
   assert.equal(numbers.length, 2);
