@@ -60,7 +60,7 @@ export class StrataRolloutDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "painting", "layers", "tables");
+    followSession(this, "painting", "layers", "tables", "views");
   }
 
   static override styles = [
