@@ -243,7 +243,7 @@ void add_roof(mesh::TriangleMesh& mesh, double left, double right, double z, dou
 }
 
 RunOff run_on_first_roof(const Surface& surface) {
-  const RunOff water =
+  RunOff water =
       run_on(surface, [](glm::dvec3 at) { return at.z > 49 && at.x < 50 ? 1.0f : 0.0f; });
   const double right = 60 * std::hypot(40, 10);
   EXPECT_NEAR(water.fallen, right, 0.01 * right);
