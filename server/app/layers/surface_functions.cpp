@@ -71,10 +71,8 @@ class SurfaceFunctionValues {
         argument.is_condition()
             ? of_condition(bound, requested.function, progress, stage)
             : of_numbers(bound, requested.function, type_of(argument, views), progress, stage));
-    auto content =
-        STRATA_TRY(query::make_patch({}, result.layer.type, *map_, std::move(values), progress));
-    for (auto& [address, tile] : content.tiles)
-      result.snapshot.tiles[address] = std::move(tile.after);
+    result.snapshot.tiles =
+        STRATA_TRY(query::make_tiles(result.layer.type, *map_, std::move(values), progress));
     return result;
   }
 

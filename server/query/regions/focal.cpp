@@ -375,9 +375,11 @@ std::vector<float> decoded(const SurfaceValues& values, ValueType type) {
   return numbers;
 }
 
-tl::unexpected<Error> radius_too_large(const mesh::SurfaceMap& map, const std::string& field) {
+Result<void> check_radius(double radius, const mesh::SurfaceMap& map, const std::string& field) {
+  const double most = max_focal_radius(map);
+  if (radius <= most && most > 0) return {};
   char largest[48];
-  std::snprintf(largest, sizeof largest, "%.3g", 0.999 * max_focal_radius(map));
+  std::snprintf(largest, sizeof largest, "%.3g", 0.999 * most);
   return fail(ErrorCode::invalid, "Radius too large",
               "The radius of a neighborhood on this layer can be at most " + std::string(largest) +
                   " model units, which is 40 texels. Choose a smaller radius, or a layer with "
@@ -396,8 +398,7 @@ Result<SurfaceValues> focal_values(Focal statistic, const SurfaceValues& values,
                                    const mesh::TexelGraph& graph, const std::string& field,
                                    Progress& progress, int threads) {
   if (map.surface_texels == 0) return values;
-  const double largest = max_focal_radius(map);
-  if (!(radius <= largest && largest > 0)) return radius_too_large(map, field);
+  STRATA_TRY(check_radius(radius, map, field));
   const RowRuns rows(values, map, graph, progress, threads);
   Input input{values, rows, map, {}};
   if (statistic != Focal::variety) input.numbers = decoded(values, type);
@@ -417,8 +418,7 @@ Result<SurfaceValues> hot_spot_chances(const SurfaceValues& values, ValueType ty
                                        const mesh::TexelGraph& graph, const std::string& field,
                                        Progress& progress, int threads) {
   if (map.surface_texels == 0) return values;
-  const double largest = max_focal_radius(map);
-  if (!(radius <= largest && largest > 0)) return radius_too_large(map, field);
+  STRATA_TRY(check_radius(radius, map, field));
   const RowRuns rows(values, map, graph, progress, threads);
   const Input input{values, rows, map, decoded(values, type)};
   const RowParts<MeanPart> parts(input, threads);

@@ -103,4 +103,12 @@ Result<TexelPatch> make_patch(const TileMap& tiles, ValueType type, const mesh::
   return patch;
 }
 
+Result<TileMap> make_tiles(ValueType type, const mesh::SurfaceMap& map, SurfaceValues values,
+                           const Progress& progress) {
+  auto patch = STRATA_TRY(make_patch({}, type, map, std::move(values), progress));
+  TileMap tiles;
+  for (auto& [address, tile] : patch.tiles) tiles[address] = std::move(tile.after);
+  return tiles;
+}
+
 }  // namespace strata::query

@@ -59,4 +59,9 @@ struct TexelPatch {
 Result<TexelPatch> make_patch(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
                               SurfaceValues after, const Progress& progress);
 
+// Returns the tiles of a layer with these values. Gutter texels follow the surface texels. Fails
+// when cancelled.
+Result<TileMap> make_tiles(ValueType type, const mesh::SurfaceMap& map, SurfaceValues values,
+                           const Progress& progress);
+
 }  // namespace strata::query

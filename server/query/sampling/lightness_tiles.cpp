@@ -24,10 +24,7 @@ Result<TileMap> lightness_tiles(const TexelAppearance& colors, const mesh::Surfa
         STRATA_TRY(encode_value(type, is_float(type) ? measured : std::round(measured)));
     values.set(texel, {bits, true});
   }
-  auto patch = STRATA_TRY(make_patch({}, type, map, std::move(values), progress));
-  TileMap tiles;
-  for (auto& [address, tile] : patch.tiles) tiles[address] = std::move(tile.after);
-  return tiles;
+  return make_tiles(type, map, std::move(values), progress);
 }
 
 }  // namespace strata::query

@@ -269,19 +269,27 @@ glm::dvec2 on_plane(const Surface& surface, std::uint32_t texel) {
                     glm::dvec3(surface.map.position(texel / 64, int(texel % 64))));
 }
 
-TEST(HotSpots, find_planted_clusters_and_little_else) {
-  const Surface surface = plane(512);
-  const double radius = 0.06;
-  const glm::dvec2 hot(0.3, 0.6), cold(0.7, 0.35);
+constexpr double kPlanted = 0.06;  // radius
+constexpr glm::dvec2 kHot(0.3, 0.6), kCold(0.7, 0.35);
+
+// Noise with a cluster of higher and one of lower values.
+SurfaceValues planted_clusters(const Surface& surface) {
   std::mt19937 random(5);
   std::normal_distribution<float> noise(0, 1);
-  const auto values = put(surface, [&](std::uint32_t texel) {
+  return put(surface, [&](std::uint32_t texel) {
     const glm::dvec2 at = on_plane(surface, texel);
-    const float planted = glm::distance(at, hot) < radius    ? 0.5f
-                          : glm::distance(at, cold) < radius ? -0.5f
-                                                             : 0;
+    const float planted = glm::distance(at, kHot) < kPlanted    ? 0.5f
+                          : glm::distance(at, kCold) < kPlanted ? -0.5f
+                                                                : 0;
     return std::optional(10 + noise(random) + planted);
   });
+}
+
+TEST(HotSpots, find_planted_clusters_and_little_else) {
+  const Surface surface = plane(512);
+  const double radius = kPlanted;
+  const glm::dvec2 hot = kHot, cold = kCold;
+  const auto values = planted_clusters(surface);
   const auto scores = compute(Focal::hot_spot, surface, values, radius);
   ASSERT_TRUE(scores);
   double elsewhere = 0, flagged = 0, hottest = 0, coldest = 0;
@@ -406,18 +414,9 @@ SurfaceValues chances_of(const Surface& surface, const SurfaceValues& values, do
 
 TEST(HotSpotChances, find_planted_clusters_and_little_else) {
   const Surface surface = plane(512);
-  const double radius = 0.06;
-  const glm::dvec2 hot(0.3, 0.6), cold(0.7, 0.35);
-  std::mt19937 random(5);
-  std::normal_distribution<float> noise(0, 1);
-  const auto values = put(surface, [&](std::uint32_t texel) {
-    const glm::dvec2 at = on_plane(surface, texel);
-    const float planted = glm::distance(at, hot) < radius    ? 0.5f
-                          : glm::distance(at, cold) < radius ? -0.5f
-                                                             : 0;
-    return std::optional(10 + noise(random) + planted);
-  });
-  const auto chances = chances_of(surface, values, radius);
+  const double radius = kPlanted;
+  const glm::dvec2 hot = kHot, cold = kCold;
+  const auto chances = chances_of(surface, planted_clusters(surface), radius);
   double elsewhere = 0, flagged = 0;
   test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
     const glm::dvec2 at = on_plane(surface, texel);

@@ -10,6 +10,7 @@ import type { Model, VertexPropertyName } from "../../core/types";
 import type { ModelSession } from "../../session/model-session";
 import { numberInput } from "../../ui/number-input";
 import {
+  kRain,
   kRainNumbers,
   kRays,
   kShapeGroups,
@@ -316,7 +317,6 @@ export class StrataShapeFields extends LitElement {
 
 const kLengths = ["radius", "registration", "projection", "normal", "distance"] as const;
 
-const kRain = ["wind_speed_m_s", "rain_mm", "rain_mm_per_hour"] as const;
 const kAngles = ["latitude", "north"] as const;
 const kEnds = ["from", "to"] as const;
 

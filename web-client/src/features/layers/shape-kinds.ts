@@ -36,20 +36,15 @@ export type SunAngle = "latitude" | "north";
 export const kSunAngles = { latitude: 90, north: 360 } as const; // the largest values
 
 /** The numbers of the climate that users can enter, with their least and largest values. */
-export type RainNumber = "wind_speed_m_s" | "rain_mm" | "rain_mm_per_hour";
 export const kRainNumbers = {
   wind_speed_m_s: { least: 0, most: 100, unit: "m/s" },
   rain_mm: { least: 0.1, most: 100_000, unit: "mm" },
   rain_mm_per_hour: { least: 0.01, most: 1000, unit: "mm/h" },
 } as const;
+export type RainNumber = keyof typeof kRainNumbers;
+export const kRain = Object.keys(kRainNumbers) as readonly RainNumber[];
 
-const kRainTakes = [
-  "north",
-  "wind_shares",
-  "wind_speed_m_s",
-  "rain_mm",
-  "rain_mm_per_hour",
-] as const;
+const kRainTakes = ["north", "wind_shares", ...kRain] as const;
 const kSunTakes = ["latitude", "north", "months"] as const;
 const kChangeTakes = ["model", "registration", "projection", "normal", "distance"] as const;
 
@@ -168,7 +163,7 @@ export function recipeOf(input: ShapeInput): ShapeRecipe | { problem: string; fi
     if (!shares) return { problem: texts.shape.rain.wind_shares.wrong, field: "wind_shares" };
     recipe.wind_shares = shares;
   }
-  for (const name of ["wind_speed_m_s", "rain_mm", "rain_mm_per_hour"] as const) {
+  for (const name of kRain) {
     const text = input[name];
     if (!takes.includes(name) || (name === "rain_mm_per_hour" && text.trim() === "")) continue;
     const value = readNumber(text);
