@@ -62,9 +62,7 @@ Part part_of(const UnrolledDrawing& drawing) {
   const glm::dvec2 half = drawing.area.size / 2.0 * drawing.units_per_mm;
   const glm::dvec2 low = glm::max(sheet.min, drawing.center - half),
                    high = glm::min(sheet.max, drawing.center + half);
-  const auto angle_at = [&](double x) {
-    return sheet.middle() + sheet.turn() * x / sheet.surface.radius;
-  };
+  const auto angle_at = [&](double x) { return sheet.unbounded_place({x, 0}).angle; };
   std::tie(part.from, part.to) = std::minmax(angle_at(low.x), angle_at(high.x));
   part.slant_from = low.y;
   part.slant_to = high.y;
@@ -137,7 +135,7 @@ class Ruler {
 
  private:
   double mm_per_degree(double slant) const {
-    return glm::radians(drawing_.sheet.surface.radius_at(slant)) / drawing_.units_per_mm;
+    return glm::radians(drawing_.sheet.surface.min_stretch(slant)) / drawing_.units_per_mm;
   }
 
   static bool is_multiple(double value, double step) {

@@ -11,6 +11,8 @@
 #include "domain/layers/tile_mirror.h"
 
 namespace strata::mesh {
+struct FitRequest;
+struct FittedSheet;
 struct Geometry;
 class SearchTree;
 struct SurfaceMap;
@@ -43,6 +45,10 @@ class Surface {
   // not exist.
   virtual Result<std::shared_ptr<const std::vector<std::uint32_t>>> colors(
       int resolution, std::optional<SurfaceImageId> image) = 0;
+  // Returns the sheet of a rollout in the up direction of the model (mesh::fit_sheet). Checks the
+  // current question.
+  virtual Result<std::shared_ptr<const mesh::FittedSheet>> sheet(
+      const mesh::FitRequest& request, const std::optional<double>& cut) = 0;
   // The next two functions paint maps and measurements (query/maps) for an ImportEdit with `over`.
   // `point_splats` paints around the surface point nearest to each position. Returns an `invalid`
   // error if a surface point is farther away than `tolerance` (model units).

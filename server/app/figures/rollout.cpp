@@ -44,7 +44,7 @@ Result<Colors> compose(const Services& services, const RolloutRequest& request) 
   return colors;
 }
 
-// Returns the brightness of a point: 1 where it has the normal of the cylinder or cone.
+// Returns the brightness of a point: 1 where it has the normal of the fitted surface.
 double relief_at(const mesh::RolloutSheet& sheet, const mesh::RolloutHit& pixel,
                  const mesh::SurfaceNormals& normals) {
   const glm::dvec3 light = sheet.in_world(pixel.place, glm::dvec2(kLight), kLight.z);
@@ -55,8 +55,8 @@ double relief_at(const mesh::RolloutSheet& sheet, const mesh::RolloutHit& pixel,
 }  // namespace
 
 Result<mesh::FittedSheet> plan_rollout(const RolloutRequest& request) {
-  return mesh::fit_sheet(*request.room->surface().geometry(), request.fit, request.cut,
-                         request.room->model().up);
+  const auto sheet = STRATA_TRY(request.room->surface().sheet(request.fit, request.cut));
+  return *sheet;
 }
 
 Result<Picture> draw_rollout(const Services& services, const RolloutRequest& request,

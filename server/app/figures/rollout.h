@@ -25,10 +25,10 @@ struct RolloutRequest {
   room::ViewSettings shown;   // layers and surface images; the light has no effect
   std::vector<Layer> layers;  // visible layers, from bottom to top
   room::At at;                // the state of the layers
-  bool relief = true;         // shade the surface where it deviates from the cylinder or cone
+  bool relief = true;         // shade the surface where it deviates from the fitted surface
 };
 
-// Fits the cylinder or cone and lays out the sheet. Errors: see mesh::fit_sheet. Blocks.
+// Fits the surface and lays out the sheet. Errors: see mesh::fit_sheet. Blocks.
 Result<mesh::FittedSheet> plan_rollout(const RolloutRequest& request);
 
 // Draws a window of the sheet. Pixels without a surface are transparent. Returns 422 for a palette

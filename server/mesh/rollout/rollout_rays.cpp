@@ -27,12 +27,13 @@ RolloutRays::RolloutRays(const SearchTree& tree, const Geometry& geometry,
 RolloutRays::Ray RolloutRays::ray_at(const RolloutSheet::SurfacePlace& place) const {
   const DevelopedSurface& surface = sheet_.surface;
   const bool is_outside = sheet_.side == RolloutSide::outside;
-  const glm::dvec3 normal = surface.normal(place.angle);
-  const double to_axis = surface.radius_at(place.slant) / std::cos(surface.half_angle);
-  const glm::dvec3 on_axis = surface.at(place.angle, place.slant) - to_axis * normal - origin_;
+  const glm::dvec3 outward = surface.ray(place.angle);
+  const double to_axis = surface.to_axis(place.angle, place.slant);
+  const glm::dvec3 on_axis = surface.at(place.angle, place.slant) - to_axis * outward - origin_;
   // A point of the box is at most this far from each point of the axis in its extent.
   const double length = 2 * reach_ + to_axis;
-  return {is_outside ? on_axis + length * normal : on_axis, is_outside ? -normal : normal, length};
+  return {is_outside ? on_axis + length * outward : on_axis, is_outside ? -outward : outward,
+          length};
 }
 
 std::optional<RolloutHit> RolloutRays::cast(const glm::dvec2& on_sheet) const {

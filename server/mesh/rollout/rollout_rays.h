@@ -13,9 +13,9 @@ struct RolloutHit {
   SearchTree::Hit hit;
 };
 
-// The rays of one side of a sheet, perpendicular to the cylinder or cone: from the outside to the
-// axis, or from the axis to the outside. `tree` and `sheet` are of `geometry`, and all three must
-// outlive this object. Thread-safe.
+// The rays of one side of a sheet (DevelopedSurface::ray): from the outside to the axis, or from
+// the axis to the outside. `tree` and `sheet` are of `geometry`, and all three must outlive this
+// object. Thread-safe.
 class RolloutRays {
  public:
   RolloutRays(const SearchTree& tree, const Geometry& geometry, const RolloutSheet& sheet);

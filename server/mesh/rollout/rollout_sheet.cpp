@@ -8,6 +8,7 @@
 
 #include "domain/people/question.h"
 #include "domain/scene/up.h"
+#include "mesh/rollout/fit_cross_section.h"
 
 namespace strata::mesh {
 namespace {
@@ -47,7 +48,7 @@ void for_each_wall(const Geometry& geometry, const DevelopedFit& fit, See see) {
     const glm::dvec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     if (std::abs(glm::dot(cross, surface.axis)) > kFloorCosine * glm::length(cross)) continue;
     const double angle = (places[0].angle + places[1].angle + places[2].angle) / 3;
-    if (facing * glm::dot(cross, surface.normal(angle)) > 0) see(places);
+    if (facing * glm::dot(cross, surface.ray(angle)) > 0) see(places);
   }
 }
 
@@ -62,33 +63,34 @@ std::optional<double> widest_gap(const std::array<bool, kSectors>& is_covered) {
   return (best_end - best / 2.0) * kTurn / kSectors;
 }
 
-void find_bounds(RolloutSheet& sheet) {
-  sheet.min = glm::dvec2(std::numeric_limits<double>::infinity());
-  sheet.max = -sheet.min;
-  const auto add = [&](double angle) {
-    for (const double slant : {sheet.slant_from, sheet.slant_to}) {
-      const glm::dvec2 corner = sheet.on_sheet({angle, slant});
-      sheet.min = glm::min(sheet.min, corner);
-      sheet.max = glm::max(sheet.max, corner);
-    }
-  };
-  add(sheet.from);
-  add(sheet.middle());
-  add(sheet.to);
-  if (!sheet.surface.is_cone()) return;
-  // A ring has its extremes where the angle on the sheet is a multiple of 90°.
-  const double quarter = kTurn / 4 / std::abs(std::sin(sheet.surface.half_angle));
-  for (const double angle : {sheet.middle() - quarter, sheet.middle() + quarter})
-    if (angle > sheet.from && angle < sheet.to) add(angle);
-}
-
 }  // namespace
 
+void RolloutSheet::find_bounds() {
+  min = glm::dvec2(std::numeric_limits<double>::infinity());
+  max = -min;
+  const auto add = [&](double angle) {
+    for (const double slant : {slant_from, slant_to}) {
+      const glm::dvec2 corner = on_sheet({angle, slant});
+      min = glm::min(min, corner);
+      max = glm::max(max, corner);
+    }
+  };
+  add(from);
+  add(middle());
+  add(to);
+  if (!surface.is_cone()) return;
+  // A ring has its extremes where the angle on the sheet is a multiple of 90°.
+  const double quarter = kTurn / 4 / std::abs(std::sin(surface.half_angle));
+  for (const double angle : {middle() - quarter, middle() + quarter})
+    if (angle > from && angle < to) add(angle);
+}
+
 glm::dvec2 RolloutSheet::on_sheet(const SurfacePlace& place) const {
-  const double around = turn() * (place.angle - middle());
-  if (!surface.is_cone()) return {around * surface.radius, place.slant};
+  if (!surface.is_cone())
+    return {turn() * (surface.arc(place.angle, 0) - surface.arc(middle(), 0)), place.slant};
   const double sine = std::sin(surface.half_angle), apex = surface.apex();
-  const double angle = around * std::abs(sine), from_apex = place.slant - apex;
+  const double angle = turn() * (place.angle - middle()) * std::abs(sine),
+               from_apex = place.slant - apex;
   return {std::abs(from_apex) * std::sin(angle), apex + from_apex * std::cos(angle)};
 }
 
@@ -99,21 +101,21 @@ double RolloutSheet::beyond_cut() const {
   return surface.is_cone() ? std::min(kTurn / 2, (kTurn - fan) / 2 / fan * kTurn) : kTurn / 2;
 }
 
+RolloutSheet::SurfacePlace RolloutSheet::unbounded_place(const glm::dvec2& sheet) const {
+  if (surface.section)
+    return {surface.section->angle_at(surface.arc(middle(), 0) + turn() * sheet.x), sheet.y};
+  if (!surface.is_cone()) return {middle() + turn() * sheet.x / surface.radius, sheet.y};
+  const double sine = std::sin(surface.half_angle), apex = surface.apex();
+  const double sign = sine < 0 ? -1 : 1;
+  const double around = std::atan2(sheet.x, sign * (sheet.y - apex)) / std::abs(sine);
+  return {middle() + turn() * around, apex + sign * std::hypot(sheet.x, sheet.y - apex)};
+}
+
 std::optional<RolloutSheet::SurfacePlace> RolloutSheet::on_surface(const glm::dvec2& sheet) const {
-  SurfacePlace place;
-  if (surface.is_cone()) {
-    const double sine = std::sin(surface.half_angle), apex = surface.apex();
-    const double sign = sine < 0 ? -1 : 1;
-    place.slant = apex + sign * std::hypot(sheet.x, sheet.y - apex);
-    place.angle = std::atan2(sheet.x, sign * (sheet.y - apex)) / std::abs(sine);
-  } else {
-    place = {sheet.x / surface.radius, sheet.y};
-  }
-  const bool is_inside = std::abs(place.angle) <= (to - from) / 2 && place.slant >= slant_from &&
-                         place.slant <= slant_to;
-  if (!is_inside) return std::nullopt;
-  place.angle = middle() + turn() * place.angle;
-  return place;
+  const SurfacePlace place = unbounded_place(sheet);
+  const bool is_inside = std::abs(place.angle - middle()) <= (to - from) / 2 &&
+                         place.slant >= slant_from && place.slant <= slant_to;
+  return is_inside ? std::optional(place) : std::nullopt;
 }
 
 glm::dvec2 RolloutSheet::up_at(double angle) const {
@@ -180,11 +182,11 @@ Result<RolloutSheet> plan_rollout(const Geometry& geometry, const DevelopedFit& 
   const double middle = std::remainder(start + (low + high) / 2, kTurn);
   sheet.from = middle - (high - low) / 2;
   sheet.to = middle + (high - low) / 2;
-  find_bounds(sheet);
+  sheet.find_bounds();
   return sheet;
 }
 
-Result<FittedSheet> fit_sheet(const Geometry& geometry, FitRequest request,
+Result<FittedSheet> fit_sheet(const SearchTree& tree, const Geometry& geometry, FitRequest request,
                               const std::optional<double>& cut, std::string_view up) {
   const UpFrame frame = up_frame(up);
   request.up = frame.up;
@@ -192,6 +194,8 @@ Result<FittedSheet> fit_sheet(const Geometry& geometry, FitRequest request,
   FittedSheet fitted;
   fitted.fit = STRATA_TRY(fit_developed_surface(geometry, request));
   fitted.sheet = STRATA_TRY(plan_rollout(geometry, fitted.fit, cut));
+  if (request.shape == DevelopedShape::general_cylinder)
+    STRATA_TRY(fit_cross_section(tree, geometry, request, fitted));
   return fitted;
 }
 

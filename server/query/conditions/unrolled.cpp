@@ -56,13 +56,13 @@ class Unrolled {
     const glm::dvec3 center = origin_ + glm::dvec3(ball.center);
     const DevelopedSurface& surface = sheet_.surface;
     const auto place = surface.place_of(center);
+    const glm::dvec3 from_point = center - surface.point;
     const double to_axis =
-        surface.radius_at(place.slant) + place.height * std::cos(surface.half_angle);
+        glm::length(from_point - glm::dot(from_point, surface.axis) * surface.axis);
     if (!(to_axis > ball.radius)) return false;
     // Within the ball, the slant differs by at most its radius, and the angle by at most this.
     const double angle = std::asin(ball.radius / to_axis);
-    const double reach =
-        (std::abs(surface.radius_at(place.slant)) + ball.radius) * angle + ball.radius;
+    const double reach = (surface.max_stretch(place.slant) + ball.radius) * angle + ball.radius;
     const glm::dvec2 low = area_.low() - reach, high = area_.high() + reach;
     return !any_turn(place, [&](const glm::dvec2& point, double) {
       return point.x >= low.x && point.y >= low.y && point.x <= high.x && point.y <= high.y;

@@ -1,5 +1,7 @@
 #include "room/caches/surface_lookup.h"
 
+#include <algorithm>
+
 #include "domain/people/question.h"
 
 namespace strata::room {
@@ -36,6 +38,29 @@ Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::find_or_build(
   auto graph = std::make_shared<const mesh::TexelGraph>(std::move(built));
   graphs_[map.resolution].graph = graph;
   return graph;
+}
+
+Result<std::shared_ptr<const mesh::FittedSheet>> SurfaceLookup::sheet(
+    const mesh::FitRequest& request, const std::optional<double>& cut, const std::string& up) {
+  const auto is_same = [&](const Sheet& each) {
+    return each.request == request && each.cut == cut && each.up == up;
+  };
+  {
+    const std::lock_guard lock(sheets_mutex_);
+    const auto found = std::ranges::find_if(sheets_, is_same);
+    if (found != sheets_.end()) {
+      sheets_.splice(sheets_.begin(), sheets_, found);
+      return found->sheet;
+    }
+  }
+  // Without the lock, because the question of each user must be able to end.
+  auto fitted = STRATA_TRY(mesh::fit_sheet(*tree(), *geometry_, request, cut, up));
+  auto sheet = std::make_shared<const mesh::FittedSheet>(std::move(fitted));
+  const std::lock_guard lock(sheets_mutex_);
+  std::erase_if(sheets_, is_same);
+  sheets_.push_front({request, cut, up, sheet});
+  if (sheets_.size() > kSheets) sheets_.pop_back();
+  return sheet;
 }
 
 bool SurfaceLookup::drop_graphs() {

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 
 #include "core/memory_ledger.h"
 #include "core/progress.h"
+#include "mesh/rollout/rollout_sheet.h"
 #include "mesh/surface/search_tree.h"
 #include "mesh/texels/texel_graph.h"
 
@@ -23,6 +27,11 @@ class SurfaceLookup {
   std::shared_ptr<const mesh::SearchTree> tree();
   // Returns the error `out_of_memory` if the budget of main memory is too small.
   Result<std::shared_ptr<const mesh::TexelGraph>> graph(const mesh::SurfaceMap& map);
+  // Fits the sheet of a rollout (mesh::fit_sheet). Keeps the last sheets, because users paint many
+  // parts on one sheet. Checks the current question.
+  Result<std::shared_ptr<const mesh::FittedSheet>> sheet(const mesh::FitRequest& request,
+                                                         const std::optional<double>& cut,
+                                                         const std::string& up);
   // Drops all graphs, which are then built again on use. Returns false if there is no graph, or if
   // one is being built.
   bool drop_graphs();
@@ -42,6 +51,16 @@ class SurfaceLookup {
   MemoryLedger& memory_;
   std::mutex graphs_mutex_;
   std::map<int, Graph> graphs_;  // by resolution
+
+  struct Sheet {
+    mesh::FitRequest request;
+    std::optional<double> cut;
+    std::string up;
+    std::shared_ptr<const mesh::FittedSheet> sheet;
+  };
+  static constexpr std::size_t kSheets = 8;
+  std::mutex sheets_mutex_;
+  std::list<Sheet> sheets_;  // newest first
 };
 
 }  // namespace strata::room

@@ -124,6 +124,11 @@ std::shared_ptr<const mesh::Geometry> OpenRoom::SurfacePart::geometry() const {
   return room_.geometry_;
 }
 
+Result<std::shared_ptr<const mesh::FittedSheet>> OpenRoom::SurfacePart::sheet(
+    const mesh::FitRequest& request, const std::optional<double>& cut) {
+  return room_.surface_lookup_->sheet(request, cut, room_.model().up);
+}
+
 std::shared_ptr<const mesh::SearchTree> OpenRoom::SurfacePart::search_tree() {
   return room_.surface_lookup_->tree();
 }

@@ -18,6 +18,8 @@ class OpenRoom::SurfacePart final : public Surface {
   Result<std::shared_ptr<const mesh::TexelGraph>> graph(int resolution) override;
   Result<std::shared_ptr<const query::TexelAppearance>> colors(
       int resolution, std::optional<SurfaceImageId> image) override;
+  Result<std::shared_ptr<const mesh::FittedSheet>> sheet(const mesh::FitRequest& request,
+                                                         const std::optional<double>& cut) override;
   Result<TileMap> point_splats(const Layer& layer, const std::vector<PlacedValue>& values,
                                double radius, double tolerance) override;
   Result<TileMap> project(const Layer& layer, const glm::dvec3& direction,

@@ -123,14 +123,14 @@ Result<query::TexelSelection> OpenRoom::QueriesPart::texels_of(
 Result<query::TexelSelection> OpenRoom::QueriesPart::texels_unrolled(
     const Selection::Unrolled& unrolled, const mesh::SurfaceMap& map, const std::string& field) {
   const mesh::Geometry& geometry = *room_.geometry_;
-  auto fitted = mesh::fit_sheet(geometry, unrolled.fit, unrolled.cut, room_.model().up);
+  auto fitted = room_.surface_lookup_->sheet(unrolled.fit, unrolled.cut, room_.model().up);
   if (!fitted) {
     Error problem = std::move(fitted.error());
     problem.field = field + ".unrolled." + problem.field;
     return tl::unexpected(std::move(problem));
   }
   const auto tree = room_.surface_lookup_->tree();
-  const mesh::RolloutRays rays(*tree, geometry, fitted->sheet);
+  const mesh::RolloutRays rays(*tree, geometry, (*fitted)->sheet);
   const mesh::SheetArea area(unrolled.polygons, unrolled.strokes);
   return query::select_unrolled(map, rays, geometry.origin, area, mesh::background_threads());
 }

@@ -13,7 +13,7 @@ import numpy
 import pytest
 from support import tiff
 from support.cameras import camera_from
-from support.meshes import bumpy_ball, folded_grid, vessel
+from support.meshes import bumpy_ball, folded_grid, pillar, vessel
 from support.pictures import pixels
 
 RED = (255, 0, 0)
@@ -86,6 +86,7 @@ def server(server):
             f"/models/{name}/layers/marks/edits",
             {"op": "fill", "mode": "where", "where": PAINTED, "value": 1},
         )
+    server.import_model(pillar(), "pillar.ply", name="pillar", unit="mm")
     server.import_model(folded_grid(), "sheet.ply", name="Sheet", unit="mm")
     server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
     return server
@@ -167,6 +168,38 @@ def test_the_sheet_of_a_response_can_be_requested_again(server):
     for name in ("left", "top", "width", "height", "from", "to"):
         assert abs(first[name] - again[name]) < 1e-3, (name, first, again)
     assert max(first["width"], first["height"]) == 2000, first
+
+
+def test_a_pillar_is_unrolled_along_its_cross_section(server):
+    answer = rollout(server, "pillar", shape="general_cylinder", mm_per_pixel=0.25)
+    header = json.loads(answer.headers["Strata-Rollout"])
+    sheet = rollout(
+        server, "pillar", shape="general_cylinder", mm_per_pixel=0.25, accept="application/json"
+    ).json()
+    section = sheet.pop("section")
+    assert header == sheet and sheet["shape"] == "general_cylinder", (header, sheet)
+    assert abs(sheet["width"] * 0.25 - 200) < 1 and abs(sheet["height"] * 0.25 - 80) < 0.5, sheet
+    assert abs(sheet["radius"] * 2 * math.pi - 200) < 1, sheet
+    # The corners of the section are on the walls.
+    axis, zero = numpy.array(sheet["axis"]["direction"]), numpy.array(sheet["zero"])
+    for i, radius in enumerate(section):
+        angle = 2 * math.pi * i / len(section)
+        x, y, _ = numpy.array(sheet["axis"]["point"]) + radius * (
+            math.cos(angle) * zero + math.sin(angle) * numpy.cross(axis, zero)
+        )
+        assert abs(max(abs(x) / 30, abs(y) / 20) - 1) < 0.01, (i, x, y)
+    # The cut is at the back by default.
+    rows = numpy.array(pixels(answer.body, slice(0, 4)))
+    assert (rows[:, 5:-5, 3] == 255).all()
+    answer = server.request(
+        "POST",
+        "/models/pillar/figures",
+        {"rollout": {"shape": "general_cylinder"}, "format": "svg", "dpi": 50, "scale": 2},
+    )
+    angles = ruler(answer.body, "angle-ruler")
+    # From the middle of a narrow wall at 90° to that of a wide wall at 180° or 0° are 50 mm.
+    places = {text: place for place, text in angles}
+    assert abs(abs(places["90°"] - places["0°"])[0] - 50 / 2) < 0.3, angles
 
 
 def test_models_without_an_axis_are_refused(server):

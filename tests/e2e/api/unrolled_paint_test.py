@@ -4,7 +4,7 @@ import math
 
 import numpy
 import pytest
-from support.meshes import bumpy_ball, vessel
+from support.meshes import bumpy_ball, pillar, vessel
 from support.pictures import pixels
 
 RED = {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]}
@@ -50,10 +50,27 @@ def server(server):
             {"name": "Marks", "type": "u8", "resolution": 2048, "palette": RED},
         )
     server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
+    server.import_model(pillar(), "pillar.ply", name="Pillar", unit="mm")
     return server
 
 
 INTO = {"layer": "marks", "value": 1}
+
+
+def test_an_area_around_the_edges_of_a_pillar_has_its_area(server):
+    around = {"shape": "general_cylinder"}
+    # 80 mm reach around both edges of the front, which is 60 mm wide.
+    answer = select(server, "pillar", {**around, "polygons": [box(-40, -10, 40, 10)]})
+    near(area_mm2(answer), 80 * 20)
+    # The whole walls, also across the cut.
+    answer = select(server, "pillar", {**around, "polygons": [box(-150, -100, 150, 100)]})
+    near(area_mm2(answer), 200 * 80)
+    # The sheet of a response can be used again.
+    sheet = server.ok(
+        "POST", "/models/pillar/rollout", around, headers={"Accept": "application/json"}
+    ).json()
+    again = {"axis": sheet["axis"], "side": sheet["side"], "cut": sheet["from"], **around}
+    near(area_mm2(select(server, "pillar", {**again, "polygons": [box(-40, -10, 40, 10)]})), 1600)
 
 
 def test_a_rectangle_has_its_area_and_is_one_durable_edit(server):

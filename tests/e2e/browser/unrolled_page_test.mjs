@@ -106,6 +106,17 @@ test.beforeAll(async () => {
   await open(ada);
 });
 
+test("the shape of the fitted surface can be chosen", async () => {
+  const fitted = dialog(ada).getByText(words.rollouts.general_cylinder(""), { exact: false });
+  await dialog(ada).locator('select[name="shape"]').selectOption("general_cylinder");
+  await fitted.waitFor();
+  await dialog(ada).locator('figure[aria-busy="false"] img').waitFor();
+  await shot(ada, "any_cross_section");
+  await dialog(ada).locator('select[name="shape"]').selectOption("auto");
+  await fitted.waitFor({ state: "detached" });
+  await dialog(ada).locator('figure[aria-busy="false"] img').waitFor();
+});
+
 test("a stroke is one edit with the width on the object, and can be undone", async () => {
   await radio(ada, words.tools.brush).click();
   await dialog(ada).getByText(words.rollouts.paints("Test", "Test")).waitFor();

@@ -70,6 +70,23 @@ def bumpy_ball(rows=40, columns=80, radius=50.0):
     return ply(vertices, faces)
 
 
+def pillar(width=60.0, depth=40.0, height=80.0, rows=8):
+    """Returns the walls of a pillar around the z axis, from z = 0 to `height`, whose faces point
+    outwards."""
+    x, y = width / 2, depth / 2
+    vertices = [
+        (*corner, height * i / rows)
+        for i in range(rows + 1)
+        for corner in ((x, -y), (x, y), (-x, y), (-x, -y))
+    ]
+    faces = []
+    for i in range(rows):
+        for j in range(4):
+            a, b = 4 * i + j, 4 * i + (j + 1) % 4
+            faces += [(a, b, b + 4), (a, b + 4, a + 4)]
+    return ply(vertices, faces)
+
+
 def vessel(radius=40.0, slope=0.0, height=80.0, around=180, rows=60):
     """Returns the wall of a vessel around the z axis, from z = 0 to `height`, whose faces point
     outwards. Its radius is `radius` + `slope` · z."""

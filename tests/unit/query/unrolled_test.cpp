@@ -67,7 +67,8 @@ Shape scroll() {
 
 RolloutSheet sheet_of(const Surface& surface, const FitRequest& request = {},
                       const std::optional<double>& cut = {}) {
-  const auto fitted = mesh::fit_sheet(surface.geometry, request, cut, "z");
+  const mesh::SearchTree tree(std::make_shared<mesh::Geometry>(surface.geometry));
+  const auto fitted = mesh::fit_sheet(tree, surface.geometry, request, cut, "z");
   EXPECT_TRUE(fitted) << fitted.error().detail;
   return fitted ? fitted->sheet : RolloutSheet{};
 }
@@ -137,6 +138,32 @@ TEST(Unrolled, a_stroke_on_the_sheet_has_its_area_on_the_surface) {
       EXPECT_NEAR(area_of(surface, select(surface, sheet, line)), expected, 0.01 * expected);
     }
   }
+}
+
+TEST(Unrolled, an_area_on_the_sheet_of_a_general_cylinder_has_its_area) {
+  // An elliptical column: 30 and 20 wide, with a known length of the way around.
+  const auto ellipse = [](double s) {
+    return glm::dvec2(30 * std::cos(2 * kPi * s), 20 * std::sin(2 * kPi * s));
+  };
+  double length = 0;
+  for (int i = 0; i < 10'000; ++i)
+    length += glm::distance(ellipse(i / 1e4), ellipse((i + 1) / 1e4));
+  Shape shape = wall(0);
+  shape.position = [=](double s, double t) {
+    return glm::dvec3(100, -20, 50) + glm::dvec3(ellipse(s), 40 * t - 20);
+  };
+  shape.flat = [=](double s, double t) { return glm::dvec2(s * length, t * 40); };
+  const Surface surface = test::cut_surface(shape, kCuts[2], 2 * kResolution);
+  FitRequest request;
+  request.shape = mesh::DevelopedShape::general_cylinder;
+  const RolloutSheet sheet = sheet_of(surface, request);
+  for (const double angle : {sheet.middle(), sheet.middle() + 0.8, sheet.from, sheet.to}) {
+    const SheetArea area({rectangle(sheet, {angle, 0}, 50, 30)}, {});
+    EXPECT_NEAR(area_of(surface, select(surface, sheet, area)), 1500, 15) << angle;
+  }
+  const SheetArea everywhere(everything(sheet), {});
+  EXPECT_NEAR(area_of(surface, select(surface, sheet, everywhere)), 40 * length,
+              0.01 * 40 * length);
 }
 
 TEST(Unrolled, an_inner_wall_is_not_selected_from_the_outside) {

@@ -3449,8 +3449,8 @@ export interface RolloutAxis {
   direction: Point3;
 }
 
-/** Shape of the surface of a rollout. */
-export type RolloutShape = "cylinder" | "cone";
+/** Shape of the surface of a rollout. A general cylinder has any cross section, such as that of a vault or pillar. */
+export type RolloutShape = "cylinder" | "cone" | "general_cylinder";
 
 /** Side of a wall. `outside` is seen from around the model, `inside` from the axis. */
 export type RolloutSide = "outside" | "inside";
@@ -3473,7 +3473,7 @@ export interface SheetStroke {
 export interface Unrolled {
   /** Required for models without a unique axis, such as spheres. */
   axis?: RolloutAxis;
-  /** Default: a cone if it fits clearly better. */
+  /** Default: a cylinder, or a cone if it fits clearly better. */
   shape?: RolloutShape;
   /** Radius at `axis.point`, in units of the model. Only together with `axis`. */
   radius?: number;
@@ -3713,11 +3713,11 @@ export interface FigureLabels {
   column: string;
 }
 
-/** Request for a rollout. A rollout is the surface of a cylinder or cone, unrolled onto a plane without distortion. The server fits all values that are absent. */
+/** Request for a rollout. A rollout is the surface of a cylinder or cone, unrolled onto a plane without distortion. The cross section of a general cylinder is fitted to the model. The server fits all values that are absent. */
 export interface RolloutRequest {
   /** Required for models without a unique axis, such as spheres. */
   axis?: RolloutAxis;
-  /** Default: a cone if it fits clearly better. */
+  /** Default: a cylinder, or a cone if it fits clearly better. */
   shape?: RolloutShape;
   /** Radius at `axis.point`, in units of the model. Only together with `axis`. */
   radius?: number;
@@ -3740,15 +3740,17 @@ export interface RolloutRequest {
 
 /** Sheet of a rollout. Coordinates and lengths are in units of the model. Angles are in degrees, counterclockwise around the axis when seen against its direction. */
 export interface RolloutSheet {
-  shape: "cylinder" | "cone";
+  shape: RolloutShape;
   side: RolloutSide;
   /** The direction has the length 1. */
   axis: RolloutAxis;
   /** Direction of the angle 0, with the length 1. */
   zero: Point3;
-  /** At `axis.point`. */
+  /** At `axis.point`. For a general cylinder: of the circle with the same circumference. */
   radius: number;
-  /** 0 for a cylinder. */
+  /** Only of a general cylinder, and not in the header: the distances of the corners of the cross section from the axis, at equal steps of the angle, beginning with `zero`. */
+  section?: number[];
+  /** 0 unless it is a cone. */
   half_angle: number;
   /** The smallest angle on the sheet. */
   from: number;
@@ -3764,7 +3766,7 @@ export interface RolloutSheet {
   width: number;
   /** In pixels. */
   height: number;
-  /** Root mean square of the distances of the model from the cylinder or cone. */
+  /** Root mean square of the distances of the model from the fitted surface. */
   deviation: number;
 }
 
@@ -3772,7 +3774,7 @@ export interface RolloutSheet {
 export interface FigureRollout {
   /** Required for models without a unique axis, such as spheres. */
   axis?: RolloutAxis;
-  /** Default: a cone if it fits clearly better. */
+  /** Default: a cylinder, or a cone if it fits clearly better. */
   shape?: RolloutShape;
   /** Radius at `axis.point`, in units of the model. Only together with `axis`. */
   radius?: number;

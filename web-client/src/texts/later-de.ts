@@ -7,10 +7,17 @@ import type { LaterTexts } from "./shape";
 export const laterTexts = {
   rollouts: {
     title: "Abrollung",
-    lead: "Zeigt die Wand eines Gefäßes, einer Säule oder eines Gewölbes auf einem ebenen Blatt. Längen und Flächen auf dem Blatt sind die auf dem angepassten Zylinder oder Kegel.",
+    lead: "Zeigt die Wand eines Gefäßes, einer Säule oder eines Gewölbes auf einem ebenen Blatt. Längen und Flächen auf dem Blatt sind die auf der angepassten Fläche.",
     side: "Seite",
     sides: { auto: "Automatisch", outside: "Außen", inside: "Innen" },
     from: "Abgerollt (Gefäß, Säule oder Gewölbe)",
+    shape: "Form",
+    shapes: {
+      auto: "Zylinder oder Kegel",
+      cylinder: "Zylinder",
+      cone: "Kegel",
+      general_cylinder: "Beliebiger Querschnitt (Gewölbe, Pfeiler)",
+    },
     axis: "Achse",
     axes: {
       auto: "Automatisch gefunden",
@@ -31,6 +38,7 @@ export const laterTexts = {
     cylinder: (radius: string) => `Zylinder mit dem Radius ${radius}`,
     cone: (radius: string, angle: string) =>
       `Kegel mit dem mittleren Radius ${radius} und dem halben Öffnungswinkel ${angle}°`,
+    general_cylinder: (radius: string) => `Querschnitt mit dem mittleren Radius ${radius}`,
     size: (width: string, height: string) => `${width} × ${height} Pixel`,
     wrong_cut: "Geben Sie einen Winkel von −360 bis 360 ein.",
     wrong_pixel: "Geben Sie eine Breite in mm ein, die größer als 0 ist.",

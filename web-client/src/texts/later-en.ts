@@ -6,10 +6,17 @@ import { count, plural } from "./count";
 export const laterTexts = {
   rollouts: {
     title: "Unrolled picture",
-    lead: "Shows the wall of a vessel, column or vault on a flat sheet. Lengths and areas on the sheet are those on the fitted cylinder or cone.",
+    lead: "Shows the wall of a vessel, column or vault on a flat sheet. Lengths and areas on the sheet are those on the fitted surface.",
     side: "Side",
     sides: { auto: "Automatic", outside: "Outside", inside: "Inside" },
     from: "Unrolled (vessel, column or vault)",
+    shape: "Shape",
+    shapes: {
+      auto: "Cylinder or cone",
+      cylinder: "Cylinder",
+      cone: "Cone",
+      general_cylinder: "Any cross section (vault, pillar)",
+    },
     axis: "Axis",
     axes: {
       auto: "Found automatically",
@@ -30,6 +37,7 @@ export const laterTexts = {
     cylinder: (radius: string) => `Cylinder with the radius ${radius}`,
     cone: (radius: string, angle: string) =>
       `Cone with the mean radius ${radius} and the half angle ${angle}°`,
+    general_cylinder: (radius: string) => `Cross section with the mean radius ${radius}`,
     size: (width: string, height: string) => `${width} × ${height} pixels`,
     wrong_cut: "Enter an angle from −360 to 360.",
     wrong_pixel: "Enter a width in mm that is larger than 0.",

@@ -7,10 +7,17 @@ import type { LaterTexts } from "./shape";
 export const laterTexts = {
   rollouts: {
     title: "Desarrollo",
-    lead: "Muestra la pared de una vasija, una columna o una bóveda en una hoja plana. Las longitudes y áreas de la hoja son las del cilindro o cono ajustado.",
+    lead: "Muestra la pared de una vasija, una columna o una bóveda en una hoja plana. Las longitudes y áreas de la hoja son las de la superficie ajustada.",
     side: "Lado",
     sides: { auto: "Automático", outside: "Exterior", inside: "Interior" },
     from: "Desarrollado (vasija, columna o bóveda)",
+    shape: "Forma",
+    shapes: {
+      auto: "Cilindro o cono",
+      cylinder: "Cilindro",
+      cone: "Cono",
+      general_cylinder: "Cualquier sección transversal (bóveda, pilar)",
+    },
     axis: "Eje",
     axes: {
       auto: "Encontrado automáticamente",
@@ -31,6 +38,7 @@ export const laterTexts = {
     cylinder: (radius: string) => `Cilindro con el radio ${radius}`,
     cone: (radius: string, angle: string) =>
       `Cono con el radio medio ${radius} y el semiángulo ${angle}°`,
+    general_cylinder: (radius: string) => `Sección transversal con el radio medio ${radius}`,
     size: (width: string, height: string) => `${width} × ${height} píxeles`,
     wrong_cut: "Introduzca un ángulo de −360 a 360.",
     wrong_pixel: "Introduzca un ancho en mm mayor que 0.",

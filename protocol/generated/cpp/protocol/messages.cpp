@@ -1019,6 +1019,7 @@ std::string_view name(RolloutShape value) {
   switch (value) {
     case RolloutShape::cylinder: return "cylinder";
     case RolloutShape::cone: return "cone";
+    case RolloutShape::general_cylinder: return "general_cylinder";
   }
   return {};
 }
@@ -1027,6 +1028,7 @@ void read(const nlohmann::json& json, RolloutShape& value) {
   const auto& text = json.get_ref<const std::string&>();
   if (text == "cylinder") value = RolloutShape::cylinder;
   if (text == "cone") value = RolloutShape::cone;
+  if (text == "general_cylinder") value = RolloutShape::general_cylinder;
 }
 
 nlohmann::json to_json(const RolloutShape& value) { return name(value); }

@@ -3227,8 +3227,8 @@ nlohmann::json to_json(const RolloutAxis& value);
 template <>
 inline constexpr Schema kSchemaOf<RolloutAxis> = Schema::RolloutAxis;
 
-// Shape of the surface of a rollout.
-enum class RolloutShape { cylinder, cone };
+// Shape of the surface of a rollout. A general cylinder has any cross section, such as that of a vault or pillar.
+enum class RolloutShape { cylinder, cone, general_cylinder };
 std::string_view name(RolloutShape value);
 void read(const nlohmann::json& json, RolloutShape& value);
 nlohmann::json to_json(const RolloutShape& value);
@@ -3257,7 +3257,7 @@ inline constexpr Schema kSchemaOf<SheetStroke> = Schema::SheetStroke;
 // Area on an unrolled sheet. The surface that a rollout shows inside the polygons or under the strokes. Surface that the rollout does not show is not included, such as the other side of a wall, or surface behind a handle. The sheet is the same as that of a rollout with the same members. To get a fixed sheet, send the values of `RolloutSheet`. Where the wall goes all around the axis, the area can extend past the cut: the sheet continues there with the surface at the other end.
 struct Unrolled {
   std::optional<RolloutAxis> axis;  // Required for models without a unique axis, such as spheres.
-  std::optional<RolloutShape> shape;  // Default: a cone if it fits clearly better.
+  std::optional<RolloutShape> shape;  // Default: a cylinder, or a cone if it fits clearly better.
   // Radius at `axis.point`, in units of the model. Only together with `axis`.
   std::optional<double> radius;
   // Angle between the axis and the surface of a cone in degrees, positive if the radius grows along
@@ -3594,10 +3594,10 @@ nlohmann::json to_json(const FigureLabels& value);
 template <>
 inline constexpr Schema kSchemaOf<FigureLabels> = Schema::FigureLabels;
 
-// Request for a rollout. A rollout is the surface of a cylinder or cone, unrolled onto a plane without distortion. The server fits all values that are absent.
+// Request for a rollout. A rollout is the surface of a cylinder or cone, unrolled onto a plane without distortion. The cross section of a general cylinder is fitted to the model. The server fits all values that are absent.
 struct RolloutRequest {
   std::optional<RolloutAxis> axis;  // Required for models without a unique axis, such as spheres.
-  std::optional<RolloutShape> shape;  // Default: a cone if it fits clearly better.
+  std::optional<RolloutShape> shape;  // Default: a cylinder, or a cone if it fits clearly better.
   // Radius at `axis.point`, in units of the model. Only together with `axis`.
   std::optional<double> radius;
   // Angle between the axis and the surface of a cone in degrees, positive if the radius grows along
@@ -3628,7 +3628,7 @@ inline constexpr Schema kSchemaOf<RolloutRequest> = Schema::RolloutRequest;
 // Rollout in a figure. The members have the same meaning as in `RolloutRequest`. The outline of the surface has rulers: degrees around the axis, from 0 to 360, and lengths along the axis or, for a cone, along the slant. Lengths begin at `axis.point` or, without `axis`, at the lower edge.
 struct FigureRollout {
   std::optional<RolloutAxis> axis;  // Required for models without a unique axis, such as spheres.
-  std::optional<RolloutShape> shape;  // Default: a cone if it fits clearly better.
+  std::optional<RolloutShape> shape;  // Default: a cylinder, or a cone if it fits clearly better.
   // Radius at `axis.point`, in units of the model. Only together with `axis`.
   std::optional<double> radius;
   // Angle between the axis and the surface of a cone in degrees, positive if the radius grows along

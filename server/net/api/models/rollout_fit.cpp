@@ -3,6 +3,18 @@
 #include <glm/trigonometric.hpp>
 
 namespace strata::net {
+namespace {
+
+mesh::DevelopedShape shape_of(protocol::RolloutShape shape) {
+  switch (shape) {
+    case protocol::RolloutShape::cylinder: return mesh::DevelopedShape::cylinder;
+    case protocol::RolloutShape::cone: return mesh::DevelopedShape::cone;
+    case protocol::RolloutShape::general_cylinder: return mesh::DevelopedShape::general_cylinder;
+  }
+  return {};
+}
+
+}  // namespace
 
 Result<mesh::FitRequest> read_fit(const protocol::FigureRollout& body) {
   mesh::FitRequest fit;
@@ -25,7 +37,7 @@ Result<mesh::FitRequest> read_fit(const protocol::FigureRollout& body) {
                 "The radius and `half_angle` define the shape. Leave out `shape`.", "shape");
   fit.radius = body.radius;
   if (body.half_angle) fit.half_angle = glm::radians(*body.half_angle);
-  if (body.shape) fit.is_cone = *body.shape == protocol::RolloutShape::cone;
+  if (body.shape) fit.shape = shape_of(*body.shape);
   if (body.side)
     fit.side = *body.side == protocol::RolloutSide::inside ? mesh::RolloutSide::inside
                                                            : mesh::RolloutSide::outside;

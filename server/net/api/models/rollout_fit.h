@@ -6,8 +6,8 @@
 
 namespace strata::net {
 
-// Reads the cylinder or cone of a rollout. Refuses (422) an axis without a direction, and members
-// that have no effect without others.
+// Reads what a request says about the surface of a rollout. Refuses (422) an axis without a
+// direction, and members that have no effect without others.
 Result<mesh::FitRequest> read_fit(const protocol::FigureRollout& body);
 
 }  // namespace strata::net

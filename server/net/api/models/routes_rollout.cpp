@@ -51,14 +51,23 @@ Result<app::RolloutRequest> read_rollout(const RouteContext& context, const Requ
   return rollout;
 }
 
+std::string_view name_of(mesh::DevelopedShape shape) {
+  switch (shape) {
+    case mesh::DevelopedShape::cylinder: return "cylinder";
+    case mesh::DevelopedShape::cone: return "cone";
+    case mesh::DevelopedShape::general_cylinder: return "general_cylinder";
+  }
+  return {};
+}
+
 nlohmann::json numbers(const glm::dvec3& vector) { return {vector.x, vector.y, vector.z}; }
 
-// Returns the `RolloutSheet` of the contract.
+// Returns the `RolloutSheet` of the contract, without the cross section.
 nlohmann::json sheet_json(const mesh::FittedSheet& plan, const mesh::RolloutWindow& window,
                           double metres_per_unit) {
   const mesh::RolloutSheet& sheet = plan.sheet;
   const mesh::DevelopedSurface& surface = sheet.surface;
-  return {{"shape", surface.is_cone() ? "cone" : "cylinder"},
+  return {{"shape", name_of(surface.shape())},
           {"side", sheet.side == mesh::RolloutSide::outside ? "outside" : "inside"},
           {"axis", {{"point", numbers(surface.point)}, {"direction", numbers(surface.axis)}}},
           {"zero", numbers(surface.zero)},
@@ -99,12 +108,14 @@ Result<Response> answer_rollout(const RouteContext& context, ByteBudget& budget,
   const auto plan = STRATA_TRY(app::plan_rollout(rollout));
   const double metres_per_unit = rollout.room->model().metres();
   const auto window = STRATA_TRY(window_on(plan.sheet, body.mm_per_pixel, metres_per_unit));
-  const nlohmann::json sheet = sheet_json(plan, window, metres_per_unit);
+  nlohmann::json sheet = sheet_json(plan, window, metres_per_unit);
   const std::string_view accept = request.header("accept");
   const bool only_sheet =
       accepts_type(accept, "application/json") && !accepts_type(accept, "image/png");
   Response response;
   if (only_sheet) {
+    // The section is too long for a header.
+    if (const auto& section = plan.sheet.surface.section) sheet["section"] = section->radii();
     response = json_response(sheet);
   } else {
     // The picture and its file exist at the same time.

@@ -255,9 +255,14 @@ export class StrataRolloutDialog extends LitElement {
   private fitted(sheet: RolloutSheet): string {
     const mmPerUnit = sheet.mm_per_pixel / sheet.units_per_pixel;
     const mm = `${formatFixed(sheet.radius * mmPerUnit, 1)} mm`;
-    return sheet.shape === "cone"
-      ? words.cone(mm, formatFixed(Math.abs(sheet.half_angle), 1))
-      : words.cylinder(mm);
+    switch (sheet.shape) {
+      case "cone":
+        return words.cone(mm, formatFixed(Math.abs(sheet.half_angle), 1));
+      case "cylinder":
+        return words.cylinder(mm);
+      case "general_cylinder":
+        return words.general_cylinder(mm);
+    }
   }
 
   private get request(): RolloutRequest | null {

@@ -14,6 +14,7 @@ import {
 
 const words = texts.rollouts;
 const kSides = ["auto", "outside", "inside"] as const;
+const kShapes = ["auto", "cylinder", "cone", "general_cylinder"] as const;
 const kAxes = ["auto", "vertical", "own"] as const;
 
 export const rolloutStyles = css`
@@ -46,6 +47,12 @@ export function rolloutFields(
       <span>${words.side}</span>
       <select name="side" @change=${(event: Event) => set({ side: valueFor(event) as RolloutInput["side"] })}>
         ${kSides.map((side) => html`<option value=${side} ?selected=${side === input.side}>${words.sides[side]}</option>`)}
+      </select>
+    </label>
+    <label class="field">
+      <span>${words.shape}</span>
+      <select name="shape" @change=${(event: Event) => set({ shape: valueFor(event) as RolloutInput["shape"] })}>
+        ${kShapes.map((shape) => html`<option value=${shape} ?selected=${shape === input.shape}>${words.shapes[shape]}</option>`)}
       </select>
     </label>
     <label class="field">

@@ -7,6 +7,7 @@ import type {
   LookShown,
   Point3,
   RolloutRequest,
+  RolloutShape,
   RolloutSide,
 } from "../../core/protocol.gen";
 import type { Model } from "../../core/types";
@@ -17,6 +18,7 @@ export type TypedPoint = readonly [string, string, string];
 /** The fields as typed. */
 export interface RolloutInput {
   side: RolloutSide | "auto";
+  shape: RolloutShape | "auto";
   /** `vertical`: through the middle of the model, in its up direction. `own`: the typed axis. */
   axis: "auto" | "vertical" | "own";
   point: TypedPoint;
@@ -30,6 +32,7 @@ export type RolloutField = "point" | "direction" | "cut" | "pixel";
 const kNothing: TypedPoint = ["", "", ""];
 export const kNewRollout: RolloutInput = {
   side: "auto",
+  shape: "auto",
   axis: "auto",
   point: kNothing,
   direction: kNothing,
@@ -84,7 +87,7 @@ export function withAxisFields(
 
 /** Returns the surface and its shading. The input must be valid. */
 export function rolloutOf(
-  { side, axis, point, direction, cut, relief }: RolloutInput,
+  { side, shape, axis, point, direction, cut, relief }: RolloutInput,
   { bounds, up }: Pick<Model, "bounds" | "up">,
 ): FigureRollout {
   const own = { point: numbersOf(point), direction: numbersOf(direction) };
@@ -92,6 +95,7 @@ export function rolloutOf(
   return {
     ...(axis === "auto" ? {} : { axis: axis === "own" ? own : vertical }),
     ...(side === "auto" ? {} : { side }),
+    ...(shape === "auto" ? {} : { shape }),
     ...(cut.trim() === "" ? {} : { cut: readNumber(cut) }),
     relief,
   };

@@ -25,6 +25,7 @@ describe("the request for a rollout", () => {
     const input: RolloutInput = {
       ...kNewRollout,
       side: "inside",
+      shape: "general_cylinder",
       cut: "-90",
       pixel: "0.25",
       relief: false,
@@ -32,6 +33,7 @@ describe("the request for a rollout", () => {
     const shown = { layers: [{ layer: 7, visible: false }], looks: [{ look: 3, opacity: 1 }] };
     expect(rolloutRequest(input, model, shown)).toEqual({
       side: "inside",
+      shape: "general_cylinder",
       cut: -90,
       mm_per_pixel: 0.25,
       relief: false,

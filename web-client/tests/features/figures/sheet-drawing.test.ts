@@ -78,6 +78,14 @@ describe("an area on a sheet", () => {
     });
     const open = { ...kSheet, from: -100, to: 140, shape: "cone" as const, half_angle: -6 };
     expect(withinSheet(open, part).unrolled).toMatchObject({ cut: 200, half_angle: -6 });
+    const vault = { ...kSheet, shape: "general_cylinder" as const };
+    expect(withinSheet(vault, part).unrolled).toEqual({
+      axis: kSheet.axis,
+      shape: "general_cylinder",
+      side: "outside",
+      cut: 180,
+      ...part,
+    });
     const turned = { ...kSheet, from: -10, to: 350 };
     expect(withinSheet(turned, part).unrolled).toMatchObject({ cut: 350 });
     const far = { ...kSheet, from: 190, to: 550 };
