@@ -13,7 +13,7 @@ function(strata_module name)
     strata_shared_headers(strata_${name} net)
   elseif(name MATCHES "^(domain|mesh|render|query|jobs)$")
     strata_shared_headers(strata_${name} standard COMPUTES)
-  elseif(NOT name STREQUAL "figure")  # pango needs other compiler flags
+  elseif(NOT name MATCHES "^(figure|report)$")  # pango needs other compiler flags
     strata_shared_headers(strata_${name} standard)
   endif()
   # These modules take more than half of the time of a release build. Units of eight files halve

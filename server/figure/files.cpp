@@ -1,26 +1,15 @@
 #include "figure/files.h"
 
-#include <boost/algorithm/string/erase.hpp>
-
+#include "core/text/printable.h"
 #include "figure/writers.h"
 
 namespace strata::figure {
 namespace {
 
-// Removes characters that XML and cairo do not allow: control characters, and the last two code
-// points of the first plane.
-std::string printable(std::string text) {
-  std::erase_if(
-      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n'; });
-  for (const char* no_character : {"\uFFFE", "\uFFFF"})
-    boost::algorithm::erase_all(text, no_character);
-  return text;
-}
-
-Sheet printable(Sheet sheet) {
+Sheet printable_sheet(Sheet sheet) {
   for (Group& group : sheet.groups)
     for (Item& item : group.items)
-      if (auto* words = std::get_if<Words>(&item)) words->text = printable(std::move(words->text));
+      if (auto* words = std::get_if<Words>(&item)) words->text = printable(words->text);
   return sheet;
 }
 
@@ -60,7 +49,7 @@ tl::unexpected<Error> unwritable() {
 Result<void> write_figure(const Sheet& requested, const Picture& drawing, int dpi, Format format,
                           const Document& about, const std::filesystem::path& file,
                           Progress& progress) {
-  const Sheet sheet = printable(requested);
+  const Sheet sheet = printable_sheet(requested);
   const Document document{printable(about.title), printable(about.author)};
   switch (format) {
     case Format::png: return write_png(sheet, drawing, dpi, document, file, progress);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "report/document.h"
+
+namespace strata::report {
+
+// Converts a PDF of cairo to PDF/A-2b (ISO 19005-2): writes a copy with XMP metadata, a color
+// profile, the language of the document, the alternative texts of its figures, and a file ID. The
+// copy depends only on the content. Throws exceptions of QPDF, which are std::exceptions.
+void write_archive(const std::filesystem::path& drawn, const std::filesystem::path& file,
+                   const Document& document, const std::vector<std::string>& alternatives);
+
+}  // namespace strata::report
