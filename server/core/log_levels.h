@@ -30,15 +30,17 @@ enum class Module : std::uint8_t {
   net,
   query,
   render,
+  report,
   room,
   store,
   stream,
   vocabulary,
   other
 };
-inline constexpr std::array<std::string_view, 18> kModuleNames{
-    "app",  "cli", "core",  "domain", "expression", "figure", "gl",     "jobs",       "media",
-    "mesh", "net", "query", "render", "room",       "store",  "stream", "vocabulary", "other"};
+inline constexpr std::array<std::string_view, 19> kModuleNames{
+    "app",  "cli",   "core",   "domain",     "expression", "figure", "gl",
+    "jobs", "media", "mesh",   "net",        "query",      "render", "report",
+    "room", "store", "stream", "vocabulary", "other"};
 inline constexpr std::size_t kModules = kModuleNames.size();
 
 constexpr std::string_view name(Level level) {

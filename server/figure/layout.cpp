@@ -10,7 +10,7 @@
 namespace strata::figure {
 namespace {
 
-constexpr double kMargin = 10, kGap = 4;
+constexpr double kGap = 4;
 constexpr double kTitle = 4.2, kText = 2.8, kSmall = 2.2;  // letter heights
 // Line height, relative to the letter height.
 constexpr double kLine = 1.45;
@@ -353,9 +353,9 @@ ScaleBar scale_bar(double scale, double widest_mm) {
 }
 
 SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
-                         const std::vector<Legend>& legends, int dpi) {
+                         const std::vector<Legend>& legends, int dpi, double margin) {
   sheet_.size = paper;
-  const double width = paper.x - 2 * kMargin;
+  const double width = paper.x - 2 * margin;
   const double text_width = std::max(40.0, width - kScaleWidth - kGap);
   const auto title = wrapped(captions.title, kTitle, true, text_width, kMaxTitleLines);
   const auto caption = wrapped(captions.caption, kText, false, text_width, kMaxCaptionLines);
@@ -363,9 +363,9 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
   const double text_height =
       height_of(title, kTitle) + height_of(caption, kText) + height_of(credit, kSmall) + 2;
   const double strip = std::max(text_height, kScaleHeight);
-  const double strip_top = paper.y - kMargin - strip;
+  const double strip_top = paper.y - margin - strip;
 
-  Box area{{kMargin, kMargin}, {width, strip_top - kGap - kMargin}};
+  Box area{{margin, margin}, {width, strip_top - kGap - margin}};
   const bool aside = paper.x > paper.y;  // the legend is at the right of the drawing
   const int columns = aside ? 1 : std::max(1, static_cast<int>(width / kLegendColumn));
   const auto lists = lists_of(legends, aside ? kLegendColumn - 2 : width / columns - 4);
@@ -374,14 +374,14 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
     area.size.x -= kLegendColumn + kGap;
     const auto placed = place_legend(lists, columns, area.size.y, area.size.y, captions.continued);
     legend.items = legend_items(
-        placed, {{paper.x - kMargin - kLegendColumn, kMargin}, {kLegendColumn, area.size.y}},
+        placed, {{paper.x - margin - kLegendColumn, margin}, {kLegendColumn, area.size.y}},
         columns);
   } else if (!lists.empty()) {
     const auto placed =
         place_legend(lists, columns, area.size.y / 4, area.size.y / 3, captions.continued);
     area.size.y -= placed.height + kGap;
     legend.items = legend_items(
-        placed, {{kMargin, strip_top - kGap - placed.height}, {width, placed.height}}, columns);
+        placed, {{margin, strip_top - kGap - placed.height}, {width, placed.height}}, columns);
   }
 
   // The drawing starts and ends at whole pixels, so it has the exact scale in all file formats.
@@ -398,11 +398,11 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
   border.stroke_mm = kFrame;
   frame.items.push_back(std::move(border));
   Group words{"caption", {}};
-  double y = add_lines(words.items, title, {kMargin, strip_top}, kTitle, true);
-  y = add_lines(words.items, caption, {kMargin, y + 0.6}, kText, false);
-  add_lines(words.items, credit, {kMargin, y + 0.8}, kSmall, false);
+  double y = add_lines(words.items, title, {margin, strip_top}, kTitle, true);
+  y = add_lines(words.items, caption, {margin, y + 0.6}, kText, false);
+  add_lines(words.items, credit, {margin, y + 0.8}, kSmall, false);
   sheet_.groups = {std::move(frame), std::move(legend), std::move(words)};
-  scale_box_ = {{paper.x - kMargin - kScaleWidth, strip_top}, {kScaleWidth, kScaleHeight}};
+  scale_box_ = {{paper.x - margin - kScaleWidth, strip_top}, {kScaleWidth, kScaleHeight}};
 }
 
 Sheet SheetLayout::finish(double scale, const std::optional<glm::dvec2>& north,

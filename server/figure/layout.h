@@ -28,8 +28,10 @@ struct Label {
 // A sheet without the parts that depend on the scale. It determines the area of the drawing.
 class SheetLayout {
  public:
+  // `margin` on each side of the paper in mm.
+  static constexpr double kMargin_mm = 10;
   SheetLayout(glm::dvec2 paper_mm, const Captions& captions, const std::vector<Legend>& legends,
-              int dpi);
+              int dpi, double margin = kMargin_mm);
 
   // The number of whole pixels for the drawing, with `dpi` pixels per inch.
   int drawing_width() const { return width_; }

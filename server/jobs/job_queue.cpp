@@ -64,7 +64,7 @@ Error lost_problem(JobKind kind) {
   }
   return {ErrorCode::unavailable,
           kTitle,
-          "The server restarted before this figure finished. Start the job again.",
+          "The server restarted before this file was finished. Start the job again.",
           {}};
 }
 

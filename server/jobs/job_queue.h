@@ -21,7 +21,7 @@ class Jobs;
 
 namespace strata::jobs {
 
-// The kind of a job's result.
+// The kind of a job's result. A figure is any file for the user who started the job.
 enum class JobKind { import, layers, image, figure, regions, changes, analysis };
 enum class JobState { queued, running, done, failed, cancelled };
 

@@ -24,8 +24,10 @@ ChosenSheet choose_sheet(const FigureRequest& request, const std::vector<figure:
   std::optional<ChosenSheet> best;
   for (const bool landscape : {false, true}) {
     if (request.landscape && *request.landscape != landscape) continue;
-    figure::SheetLayout layout(figure::paper_mm(request.paper, landscape), request.captions,
-                               legends, request.dpi);
+    if (request.sheet_mm && landscape) break;
+    figure::SheetLayout layout(
+        request.sheet_mm.value_or(figure::paper_mm(request.paper, landscape)), request.captions,
+        legends, request.dpi, request.sheet_mm ? 0 : figure::SheetLayout::kMargin_mm);
     const glm::dvec2 room_mm = glm::max(layout.drawing_mm() - 2.0 * border_mm, kSmallest_mm),
                      needed = size * (metres_per_unit * 1000) / room_mm;
     const double tightness = std::max(needed.x, needed.y);

@@ -41,6 +41,8 @@ struct FigureRequest {
   std::vector<glm::dvec4> section;
   std::optional<double> scale;
   figure::Paper paper = figure::Paper::a4;
+  // A part of a page instead of paper with a margin.
+  std::optional<glm::dvec2> sheet_mm{};
   std::optional<bool> landscape;
   int dpi = 300;
   figure::Format format = figure::Format::pdf;

@@ -266,6 +266,10 @@ def reading_bodies(camera):
                 "rollout": {"axis": {"point": [50, 50, -60], "direction": [0, 1, 0]}},
             },
         ],
+        "make_report": [
+            {"figures": [], "record_pictures": False, "format": "docx"},
+            {"figures": [{"view": "plan"}], "record_pictures": False, "format": "pdf"},
+        ],
         "rollout": [
             {"axis": {"point": [50, 50, -60], "direction": [0, 1, 0]}, "mm_per_pixel": 2},
             {"axis": {"point": [50, 50, -60], "direction": [0, 1, 0]}, "mm_per_pixel": 2, "at": 2},

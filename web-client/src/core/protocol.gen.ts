@@ -1251,7 +1251,7 @@ export interface Problem {
 export type LogLevel = "debug" | "info" | "warning" | "error";
 
 /** Module of the server. A folder of the server's source. `other` is all other code. */
-export type LogModule = "app" | "cli" | "core" | "domain" | "expression" | "figure" | "gl" | "jobs" | "media" | "mesh" | "net" | "query" | "render" | "room" | "store" | "stream" | "vocabulary" | "other";
+export type LogModule = "app" | "cli" | "core" | "domain" | "expression" | "figure" | "gl" | "jobs" | "media" | "mesh" | "net" | "query" | "render" | "report" | "room" | "store" | "stream" | "vocabulary" | "other";
 
 /** Log level of a module. */
 export interface ModuleLogLevel {
@@ -3831,6 +3831,69 @@ export interface FigureRequest {
   /** Text in the legend after the title of a list that continues in another column. Default: "(continued)". */
   continued?: string;
   labels?: FigureLabels;
+}
+
+/** File format of a report. `docx` can be edited in word processors. `pdf` is a PDF/A-2b file for archives. */
+export type ReportFormat = "docx" | "pdf";
+
+/** Language of a report. Of headings and other words of the server, and of the names of layers, columns and terms where a name in this language exists. */
+export type ReportLanguage = "en" | "de" | "es";
+
+/** Section of a condition report. `object`: the model with its size, credit and license. `condition` and `measures`: only the text of the request. `figures`: measured drawings. `quantities`: the legend of each layer with areas and numbers of pieces. `findings`: each record that is painted on a layer, with its values, areas and pictures. `methods`: the resolution, the area of a texel, and how layers were computed. `provenance`: the files, the state of the layers, and the last edit of each. */
+export type ReportPart = "object" | "condition" | "figures" | "quantities" | "findings" | "measures" | "methods" | "provenance";
+
+/** Section of a report in its place. */
+export interface ReportSection {
+  part: ReportPart;
+  /** Default: the name of the section in the language of the report. */
+  heading?: string;
+  /** Paragraphs at the beginning of the section, separated by empty lines. */
+  text?: string;
+}
+
+/** Row of the title block. */
+export interface ReportField {
+  label: string;
+  value: string;
+}
+
+/** Measured figure in a report. A saved view with its layers, or a direction with the layers of the report. */
+export interface ReportFigure {
+  /** Slug or id of a saved view. */
+  view?: string;
+  direction?: FigureDirection;
+  /** Denominator of the scale: 50 means 1 : 50. Default: the largest usual scale at which the whole object fits on the page. */
+  scale?: number;
+  /** Default: the name of the view or direction. */
+  caption?: string;
+}
+
+/** Condition report. All members are optional. The report shows the last durable state of the layers. */
+export interface ReportRequest {
+  /** Default: docx. */
+  format?: ReportFormat;
+  /** Default: en. */
+  language?: ReportLanguage;
+  /** Default: the name of the model. */
+  title?: string;
+  /** Below the title. Default: “Condition report” in the language of the report. */
+  subject?: string;
+  /** Default: the name of the user. */
+  author?: string;
+  /** Rows of the title block, after the rows of the server. */
+  fields?: ReportField[];
+  /** A PNG or JPEG of up to 500 kB, beside the title. */
+  logo?: string;
+  /** The sections in their order, each at most once. Default: all sections in the order of `ReportPart`. A section without content is omitted. */
+  sections?: ReportSection[];
+  /** The layers of the report. Default: the layers that are visible by default. */
+  layers?: LayerRef[];
+  /** Default: front, right, back and left. */
+  figures?: ReportFigure[];
+  /** The largest number of records of each layer in the findings. The report states how many it omits. Default: 100. */
+  max_records?: number;
+  /** Whether findings show the place of each record on the surface. The pictures of records are always shown. Default: true. */
+  record_pictures?: boolean;
 }
 
 /** Class of a column's values. A class of numbers is the range from `from` (included) to `to`. Only the last class includes `to`. All other classes have a `value`. */

@@ -1362,6 +1362,25 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Create a condition report */
+        post: operations["make_report"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/rollout": {
         parameters: {
             query?: never;
@@ -3097,6 +3116,29 @@ export interface components {
         ReplyCreate: wire.ReplyCreate;
         /** Replies in a thread, sorted by id */
         ReplyList: wire.ReplyList;
+        /** Row of the title block */
+        ReportField: wire.ReportField;
+        /** Measured figure in a report */
+        ReportFigure: wire.ReportFigure;
+        /**
+         * File format of a report
+         * @enum {string}
+         */
+        ReportFormat: wire.ReportFormat;
+        /**
+         * Language of a report
+         * @enum {string}
+         */
+        ReportLanguage: wire.ReportLanguage;
+        /**
+         * Section of a condition report
+         * @enum {string}
+         */
+        ReportPart: wire.ReportPart;
+        /** Condition report */
+        ReportRequest: wire.ReportRequest;
+        /** Section of a report in its place */
+        ReportSection: wire.ReportSection;
         /**
          * Number of texels per side
          * @enum {integer}
@@ -6316,6 +6358,42 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["Profile"];
                     "text/csv": string;
+                };
+            };
+        };
+    };
+    make_report: {
+        parameters: {
+            query?: never;
+            header?: {
+                Prefer?: string;
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ReportRequest"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/pdf": string;
+                    "application/vnd.openxmlformats-officedocument.wordprocessingml.document": string;
+                };
+            };
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
                 };
             };
         };

@@ -544,6 +544,7 @@ std::string_view name(LogModule value) {
     case LogModule::net: return "net";
     case LogModule::query: return "query";
     case LogModule::render: return "render";
+    case LogModule::report: return "report";
     case LogModule::room: return "room";
     case LogModule::store: return "store";
     case LogModule::stream: return "stream";
@@ -568,6 +569,7 @@ void read(const nlohmann::json& json, LogModule& value) {
   if (text == "net") value = LogModule::net;
   if (text == "query") value = LogModule::query;
   if (text == "render") value = LogModule::render;
+  if (text == "report") value = LogModule::report;
   if (text == "room") value = LogModule::room;
   if (text == "store") value = LogModule::store;
   if (text == "stream") value = LogModule::stream;
@@ -1160,6 +1162,68 @@ void read(const nlohmann::json& json, FigureRequestOrientation& value) {
 }
 
 nlohmann::json to_json(const FigureRequestOrientation& value) { return name(value); }
+
+std::string_view name(ReportFormat value) {
+  switch (value) {
+    case ReportFormat::docx: return "docx";
+    case ReportFormat::pdf: return "pdf";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ReportFormat& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "docx") value = ReportFormat::docx;
+  if (text == "pdf") value = ReportFormat::pdf;
+}
+
+nlohmann::json to_json(const ReportFormat& value) { return name(value); }
+
+std::string_view name(ReportLanguage value) {
+  switch (value) {
+    case ReportLanguage::en: return "en";
+    case ReportLanguage::de: return "de";
+    case ReportLanguage::es: return "es";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ReportLanguage& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "en") value = ReportLanguage::en;
+  if (text == "de") value = ReportLanguage::de;
+  if (text == "es") value = ReportLanguage::es;
+}
+
+nlohmann::json to_json(const ReportLanguage& value) { return name(value); }
+
+std::string_view name(ReportPart value) {
+  switch (value) {
+    case ReportPart::object: return "object";
+    case ReportPart::condition: return "condition";
+    case ReportPart::figures: return "figures";
+    case ReportPart::quantities: return "quantities";
+    case ReportPart::findings: return "findings";
+    case ReportPart::measures: return "measures";
+    case ReportPart::methods: return "methods";
+    case ReportPart::provenance: return "provenance";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ReportPart& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "object") value = ReportPart::object;
+  if (text == "condition") value = ReportPart::condition;
+  if (text == "figures") value = ReportPart::figures;
+  if (text == "quantities") value = ReportPart::quantities;
+  if (text == "findings") value = ReportPart::findings;
+  if (text == "measures") value = ReportPart::measures;
+  if (text == "methods") value = ReportPart::methods;
+  if (text == "provenance") value = ReportPart::provenance;
+}
+
+nlohmann::json to_json(const ReportPart& value) { return name(value); }
 
 std::string_view name(SelectionAudience value) {
   switch (value) {
@@ -4565,6 +4629,80 @@ nlohmann::json to_json(const FigureRequest& value) {
 Result<void> check(const FigureRequest& value, const std::string& field) {
   if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
   return {};
+}
+
+void read(const nlohmann::json& json, ReportSection& value) {
+  read_member(json, "part", value.part);
+  read_optional_member(json, "heading", value.heading);
+  read_optional_member(json, "text", value.text);
+}
+
+nlohmann::json to_json(const ReportSection& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "part", value.part);
+  write_optional_member(json, "heading", value.heading);
+  write_optional_member(json, "text", value.text);
+  return json;
+}
+
+void read(const nlohmann::json& json, ReportField& value) {
+  read_member(json, "label", value.label);
+  read_member(json, "value", value.value);
+}
+
+nlohmann::json to_json(const ReportField& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "label", value.label);
+  write_member(json, "value", value.value);
+  return json;
+}
+
+void read(const nlohmann::json& json, ReportFigure& value) {
+  read_optional_member(json, "view", value.view);
+  read_optional_member(json, "direction", value.direction);
+  read_optional_member(json, "scale", value.scale);
+  read_optional_member(json, "caption", value.caption);
+}
+
+nlohmann::json to_json(const ReportFigure& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "view", value.view);
+  write_optional_member(json, "direction", value.direction);
+  write_optional_member(json, "scale", value.scale);
+  write_optional_member(json, "caption", value.caption);
+  return json;
+}
+
+void read(const nlohmann::json& json, ReportRequest& value) {
+  read_optional_member(json, "format", value.format);
+  read_optional_member(json, "language", value.language);
+  read_optional_member(json, "title", value.title);
+  read_optional_member(json, "subject", value.subject);
+  read_optional_member(json, "author", value.author);
+  read_optional_member(json, "fields", value.fields);
+  read_optional_member(json, "logo", value.logo);
+  read_optional_member(json, "sections", value.sections);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "figures", value.figures);
+  read_optional_member(json, "max_records", value.max_records);
+  read_optional_member(json, "record_pictures", value.record_pictures);
+}
+
+nlohmann::json to_json(const ReportRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "format", value.format);
+  write_optional_member(json, "language", value.language);
+  write_optional_member(json, "title", value.title);
+  write_optional_member(json, "subject", value.subject);
+  write_optional_member(json, "author", value.author);
+  write_optional_member(json, "fields", value.fields);
+  write_optional_member(json, "logo", value.logo);
+  write_optional_member(json, "sections", value.sections);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "figures", value.figures);
+  write_member(json, "max_records", value.max_records);
+  write_member(json, "record_pictures", value.record_pictures);
+  return json;
 }
 
 void read(const nlohmann::json& json, ColumnClass& value) {

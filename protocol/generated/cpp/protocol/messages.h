@@ -388,6 +388,13 @@ enum class Schema {
   RolloutSheet,
   FigureRollout,
   FigureRequest,
+  ReportFormat,
+  ReportLanguage,
+  ReportPart,
+  ReportSection,
+  ReportField,
+  ReportFigure,
+  ReportRequest,
   JobFile,
   ColumnClass,
   ColumnClasses,
@@ -414,7 +421,7 @@ enum class Schema {
   SheetStroke,
   Unrolled,
 };
-constexpr int kSchemaCount = 388;
+constexpr int kSchemaCount = 395;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1615,7 +1622,7 @@ void read(const nlohmann::json& json, LogLevel& value);
 nlohmann::json to_json(const LogLevel& value);
 
 // Module of the server. A folder of the server's source. `other` is all other code.
-enum class LogModule { app, cli, core, domain, expression, figure, gl, jobs, media, mesh, net, query, render, room, store, stream, vocabulary, other };
+enum class LogModule { app, cli, core, domain, expression, figure, gl, jobs, media, mesh, net, query, render, report, room, store, stream, vocabulary, other };
 std::string_view name(LogModule value);
 void read(const nlohmann::json& json, LogModule& value);
 nlohmann::json to_json(const LogModule& value);
@@ -3707,6 +3714,94 @@ nlohmann::json to_json(const FigureRequest& value);
 Result<void> check(const FigureRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FigureRequest> = Schema::FigureRequest;
+
+// File format of a report. `docx` can be edited in word processors. `pdf` is a PDF/A-2b file for archives.
+enum class ReportFormat { docx, pdf };
+std::string_view name(ReportFormat value);
+void read(const nlohmann::json& json, ReportFormat& value);
+nlohmann::json to_json(const ReportFormat& value);
+
+// Language of a report. Of headings and other words of the server, and of the names of layers, columns and terms where a name in this language exists.
+enum class ReportLanguage { en, de, es };
+std::string_view name(ReportLanguage value);
+void read(const nlohmann::json& json, ReportLanguage& value);
+nlohmann::json to_json(const ReportLanguage& value);
+
+// Section of a condition report. `object`: the model with its size, credit and license. `condition` and `measures`: only the text of the request. `figures`: measured drawings. `quantities`: the legend of each layer with areas and numbers of pieces. `findings`: each record that is painted on a layer, with its values, areas and pictures. `methods`: the resolution, the area of a texel, and how layers were computed. `provenance`: the files, the state of the layers, and the last edit of each.
+enum class ReportPart { object, condition, figures, quantities, findings, measures, methods, provenance };
+std::string_view name(ReportPart value);
+void read(const nlohmann::json& json, ReportPart& value);
+nlohmann::json to_json(const ReportPart& value);
+
+// Section of a report in its place.
+struct ReportSection {
+  ReportPart part{};
+  // Default: the name of the section in the language of the report.
+  std::optional<std::string> heading;
+  // Paragraphs at the beginning of the section, separated by empty lines.
+  std::optional<std::string> text;
+  bool operator==(const ReportSection&) const = default;
+};
+void read(const nlohmann::json& json, ReportSection& value);
+nlohmann::json to_json(const ReportSection& value);
+template <>
+inline constexpr Schema kSchemaOf<ReportSection> = Schema::ReportSection;
+
+// Row of the title block.
+struct ReportField {
+  std::string label;
+  std::string value;
+  bool operator==(const ReportField&) const = default;
+};
+void read(const nlohmann::json& json, ReportField& value);
+nlohmann::json to_json(const ReportField& value);
+template <>
+inline constexpr Schema kSchemaOf<ReportField> = Schema::ReportField;
+
+// Measured figure in a report. A saved view with its layers, or a direction with the layers of the report.
+struct ReportFigure {
+  std::optional<std::string> view;  // Slug or id of a saved view.
+  std::optional<FigureDirection> direction;
+  // Denominator of the scale: 50 means 1 : 50. Default: the largest usual scale at which the whole
+  // object fits on the page.
+  std::optional<double> scale;
+  std::optional<std::string> caption;  // Default: the name of the view or direction.
+  bool operator==(const ReportFigure&) const = default;
+};
+void read(const nlohmann::json& json, ReportFigure& value);
+nlohmann::json to_json(const ReportFigure& value);
+template <>
+inline constexpr Schema kSchemaOf<ReportFigure> = Schema::ReportFigure;
+
+// Condition report. All members are optional. The report shows the last durable state of the layers.
+struct ReportRequest {
+  std::optional<ReportFormat> format;  // Default: docx.
+  std::optional<ReportLanguage> language;  // Default: en.
+  std::optional<std::string> title;  // Default: the name of the model.
+  // Below the title. Default: “Condition report” in the language of the report.
+  std::optional<std::string> subject;
+  std::optional<std::string> author;  // Default: the name of the user.
+  // Rows of the title block, after the rows of the server.
+  std::optional<std::vector<ReportField>> fields;
+  std::optional<std::string> logo;  // A PNG or JPEG of up to 500 kB, beside the title.
+  // The sections in their order, each at most once. Default: all sections in the order of
+  // `ReportPart`. A section without content is omitted.
+  std::optional<std::vector<ReportSection>> sections;
+  // The layers of the report. Default: the layers that are visible by default.
+  std::optional<std::vector<LayerRef>> layers;
+  std::optional<std::vector<ReportFigure>> figures;  // Default: front, right, back and left.
+  // The largest number of records of each layer in the findings. The report states how many it
+  // omits.
+  int max_records = 100;
+  // Whether findings show the place of each record on the surface. The pictures of records are
+  // always shown.
+  bool record_pictures = true;
+  bool operator==(const ReportRequest&) const = default;
+};
+void read(const nlohmann::json& json, ReportRequest& value);
+nlohmann::json to_json(const ReportRequest& value);
+template <>
+inline constexpr Schema kSchemaOf<ReportRequest> = Schema::ReportRequest;
 
 // Class of a column's values. A class of numbers is the range from `from` (included) to `to`. Only the last class includes `to`. All other classes have a `value`.
 struct ColumnClass {

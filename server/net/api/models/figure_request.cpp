@@ -143,11 +143,19 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
 }  // namespace
 
 Result<FigureRequest> read_figure_request(const RouteContext& context, const Request& request) {
-  auto body = STRATA_TRY(body_of<protocol::FigureRequest>(request));
-  auto room = open_room(context, request);
-  if (!room) return tl::unexpected(room.error());
+  const auto body = STRATA_TRY(body_of<protocol::FigureRequest>(request));
+  auto room = STRATA_TRY(open_room(context, request));
+  auto figure = STRATA_TRY(figure_request(context, request, std::move(room), body));
+  const auto language = STRATA_TRY(requested_language(request));
+  figure.language = language;
+  return figure;
+}
+
+Result<FigureRequest> figure_request(const RouteContext& context, const Request& request,
+                                     std::shared_ptr<room::Room> room,
+                                     const protocol::FigureRequest& body) {
   FigureRequest figure;
-  figure.room = std::move(*room);
+  figure.room = std::move(room);
   figure.role = request.role();
   const auto camera = STRATA_TRY(read_shown(context, request, body, figure));
   if (body.rollout)
@@ -185,8 +193,6 @@ Result<FigureRequest> read_figure_request(const RouteContext& context, const Req
                      body.credit.value_or(model.credit), body.continued};
   figure.legend = body.legend;
   figure.waiting_label = body.provisional;
-  const auto language = STRATA_TRY(requested_language(request));
-  figure.language = language;
   return figure;
 }
 

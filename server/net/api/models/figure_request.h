@@ -2,6 +2,7 @@
 
 #include "app/figures/figures.h"
 #include "net/api/route_help.h"
+#include "protocol/messages.h"
 
 namespace strata::net {
 
@@ -9,5 +10,11 @@ namespace strata::net {
 // replaces, two directions, a normal without a direction, labels for a layer without keys, and a
 // rollout together with settings that have no effect on it.
 Result<app::FigureRequest> read_figure_request(const RouteContext& context, const Request& request);
+
+// As read_figure_request, for a body that is a part of another request. The names in the legend
+// have no language.
+Result<app::FigureRequest> figure_request(const RouteContext& context, const Request& request,
+                                          std::shared_ptr<room::Room> room,
+                                          const protocol::FigureRequest& body);
 
 }  // namespace strata::net

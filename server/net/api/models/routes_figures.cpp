@@ -1,13 +1,10 @@
-// Figures, which are files with drawings to scale.
-#include <boost/algorithm/string/predicate.hpp>
-
+// Figures and condition reports, which are files for one user.
 #include "app/figures/rollout_figure.h"
-#include "domain/scene/model.h"
-#include "jobs/job_queue.h"
+#include "app/reports/report.h"
 #include "net/api/models/figure_request.h"
+#include "net/api/models/made_file.h"
+#include "net/api/models/report_request.h"
 #include "net/transport/server_options.h"
-#include "room/edits.h"
-#include "room/room.h"
 
 namespace strata::net {
 namespace {
@@ -15,50 +12,30 @@ namespace {
 // The memory for simultaneous drawings. An A3 drawing at 600 dpi needs 260 MB.
 constexpr std::uint64_t kFigureBytes = 320u << 20;
 
-// Preferences are separated by commas (RFC 7240).
-bool wants_job(const Request& request) {
-  for (std::string preference : split_list(std::string(request.header("prefer")))) {
-    preference.erase(0, preference.find_first_not_of(" \t"));
-    preference.erase(preference.find_last_not_of(" \t") + 1);
-    if (boost::algorithm::iequals(preference, "respond-async")) return true;
-  }
-  return false;
+Result<Response> answer_figure(const RouteContext& context,
+                               const std::shared_ptr<ByteBudget>& budget, const Request& request) {
+  auto figure = STRATA_TRY(read_figure_request(context, request));
+  const auto room = figure.room;
+  const std::int64_t sequence = *figure.shown.at;
+  return respond_with_file(
+      context, request, *room, sequence,
+      [&context, budget, figure = std::move(figure)](Progress& progress) {
+        const auto& folder = context.options.upload_dir;
+        return figure.rollout ? app::make_rollout_figure(context, *budget, figure, folder, progress)
+                              : app::make_figure(context.store, *budget, figure, folder, progress);
+      });
 }
 
-Result<std::shared_ptr<const TemporaryFile>> draw_figure(const RouteContext& context,
-                                                         ByteBudget& budget,
-                                                         const app::FigureRequest& figure,
-                                                         Progress& progress) {
-  const auto& folder = context.options.upload_dir;
-  return figure.rollout ? app::make_rollout_figure(context, budget, figure, folder, progress)
-                        : app::make_figure(context.store, budget, figure, folder, progress);
-}
-
-Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteBudget>& budget,
-                        const Request& request) {
-  auto figure_request = read_figure_request(context, request);
-  if (!figure_request) return tl::unexpected(figure_request.error());
-  if (wants_job(request)) {
-    const Model model = figure_request->room->model();
-    auto job = context.jobs.add(
-        model.project_id,
-        [&context, budget, figure_request = std::move(*figure_request),
-         id = model.id](Progress& progress) -> Result<jobs::JobResult> {
-          auto file = STRATA_TRY(draw_figure(context, *budget, figure_request, progress));
-          jobs::JobResult result(id);
-          result.file = std::move(file);
-          return result;
-        },
-        request.user(), jobs::JobKind::figure);
-    if (!job) return tl::unexpected(job.error());
-    return std::move(job_response(context, *job).with("Preference-Applied", "respond-async"));
-  }
-  Progress unwatched;
-  auto file = STRATA_TRY(draw_figure(context, *budget, *figure_request, unwatched));
-  Response response = file_response(std::move(file));
-  add_sequences(response, *figure_request->shown.at,
-                figure_request->room->edits().durable_sequence());
-  return response;
+Result<Response> answer_report(const RouteContext& context,
+                               const std::shared_ptr<ByteBudget>& budget, const Request& request) {
+  auto report = STRATA_TRY(read_report_request(context, request));
+  const auto room = report.room;
+  const std::int64_t sequence = *report.shown.at;
+  return respond_with_file(context, request, *room, sequence,
+                           [&context, budget, report = std::move(report)](Progress& progress) {
+                             return app::make_report(context, *budget, report,
+                                                     context.options.upload_dir, progress);
+                           });
 }
 
 }  // namespace
@@ -68,9 +45,17 @@ void add_figure_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/figures",
               .handler = answering([&context, budget](const Request& request) {
-                return answer(context, budget, request);
+                return answer_figure(context, budget, request);
               }),
               .query = {"lang"},
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/report",
+              .handler = answering([&context, budget](const Request& request) {
+                return answer_report(context, budget, request);
+              }),
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
               .is_question = true});

@@ -1,0 +1,197 @@
+#include <algorithm>
+
+#include "app/figures/class_names.h"
+#include "app/records/record_measures.h"
+#include "app/records/record_words.h"
+#include "app/reports/report_parts.h"
+#include "domain/scene/model.h"
+#include "domain/tables/attachment.h"
+#include "domain/tables/column_value.h"
+#include "domain/tables/label_text.h"
+#include "media/thumbnail.h"
+#include "room/queries.h"
+#include "room/room.h"
+#include "store/tables/attachments.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
+
+namespace strata::app {
+namespace {
+
+constexpr std::size_t kMaxPictures = 4;  // of each record
+constexpr std::uint64_t kMaxPictureBytes = 64u << 20;
+constexpr int kPictureSide = 1000;  // pixels
+
+// The records of a table that are painted on a layer.
+struct Painted {
+  const Layer& layer;
+  store::RecordPage page;
+  std::map<std::int64_t, query::KeyArea> areas;
+  RecordNames names;
+  WordsOfTables words;
+  std::vector<std::string> measures;  // their names
+};
+
+std::string cell_text(const ReportContext& context, const Painted& painted, const Record& record,
+                      const Column& column) {
+  const auto value = record.values.find(column.id);
+  if (value == record.values.end() || value->second.is_null()) return {};
+  if (column.kind == ColumnKind::boolean)
+    return value->second.get<bool>() ? context.words.yes : context.words.no;
+  if (column.kind == ColumnKind::term && column.target) {
+    const auto known = painted.words.find(*column.target);
+    if (known != painted.words.end()) return known->second.name(value->second.get<std::int64_t>());
+  }
+  std::string text = column.kind == ColumnKind::numeric
+                         ? number_in(context.words, value->second.get<double>())
+                         : print_value(column, value->second);
+  if (!column.unit.empty()) text += " " + column.unit;
+  return text;
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const ReportContext& context,
+                                                          const Painted& painted,
+                                                          const Record& record,
+                                                          const RecordMeasures& measures) {
+  std::vector<std::pair<std::string, std::string>> facts;
+  for (const Column& column : painted.page.table.columns) {
+    if (holds_attachments(column.kind) || holds_features(column.kind)) continue;
+    std::string text = cell_text(context, painted, record, column);
+    if (!text.empty())
+      facts.emplace_back(label_or(column.labels, context.words.tag, column.name), std::move(text));
+  }
+  const auto values = measures.of(record);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] > 0)) continue;
+    const std::string& name = measures.names()[i];
+    if (name == kAreaMeasure)
+      facts.emplace_back(context.words.area, area_in(context.words, values[i]));
+    else if (name == "length_m")
+      facts.emplace_back(context.words.length, length_in(context.words, values[i]));
+    else
+      facts.emplace_back(context.words.points, number_in(context.words, values[i]));
+  }
+  return facts;
+}
+
+// Returns small versions of the pictures of a record. Leaves out files that cannot be read, because
+// a report without one of them is better than no report.
+Result<std::vector<report::Cell>> pictures_of(const ReportContext& context, const Painted& painted,
+                                              const Record& record) {
+  std::vector<AttachmentId> ids;
+  for (const Column& column : painted.page.table.columns) {
+    const auto value = record.values.find(column.id);
+    if (column.kind != ColumnKind::picture || value == record.values.end()) continue;
+    for (const auto& id : value->second) ids.push_back(id.get<AttachmentId>());
+  }
+  std::vector<report::Cell> cells;
+  if (ids.empty()) return cells;
+  store::Attachments& attachments = context.services.store.attachments();
+  const auto found =
+      STRATA_TRY(attachments.of_table(painted.page.table.id, context.request.reader, ids));
+  for (const AttachmentId id : ids) {
+    const auto file = std::ranges::find(found, id, &Attachment::id);
+    if (cells.size() == kMaxPictures) break;
+    if (file == found.end() || file->bytes > kMaxPictureBytes) continue;
+    std::vector<std::uint8_t> bytes;
+    STRATA_TRY(
+        attachments.read(file->sha256, 0, file->bytes, [&](std::span<const std::uint8_t> part) {
+          bytes.insert(bytes.end(), part.begin(), part.end());
+          return true;
+        }));
+    auto small = make_thumbnail(bytes, kPictureSide);
+    if (!small) continue;
+    report::Cell cell{file->name};
+    cell.picture =
+        report::CellPicture{std::make_shared<const std::vector<std::uint8_t>>(std::move(*small)),
+                            kPlaceWidth_mm, file->name};
+    cells.push_back(std::move(cell));
+  }
+  return cells;
+}
+
+Result<void> add_record(const ReportContext& context, const Painted& painted, const Record& record,
+                        const RecordMeasures& measures, Blocks& blocks) {
+  const auto name = painted.names.find(record.key);
+  blocks.emplace_back(
+      report::Heading{3, name == painted.names.end() || name->second.empty()
+                             ? filled(context.words.record, std::to_string(record.key))
+                             : name->second});
+  const auto facts = facts_of(context, painted, record, measures);
+  if (!facts.empty()) blocks.emplace_back(facts_table(facts));
+  std::vector<report::Cell> cells;
+  if (context.request.record_pictures) {
+    const query::KeyArea& area = painted.areas.at(record.key);
+    auto picture = STRATA_TRY(
+        place_picture(context, painted.layer, record.key, area.bounds_min, area.bounds_max));
+    if (picture) {
+      report::Cell cell{context.words.place};
+      cell.picture = report::CellPicture{picture->path, kPlaceWidth_mm, context.words.place};
+      cells.push_back(std::move(cell));
+      context.files.push_back(std::move(picture));
+    }
+  }
+  auto pictures = STRATA_TRY(pictures_of(context, painted, record));
+  std::ranges::move(pictures, std::back_inserter(cells));
+  if (cells.empty()) return {};
+  report::Table table{{{"", 1}, {"", 1}}, {}};
+  for (std::size_t i = 0; i < cells.size(); i += 2) {
+    auto& row = table.rows.emplace_back();
+    row.push_back(std::move(cells[i]));
+    if (i + 1 < cells.size()) row.push_back(std::move(cells[i + 1]));
+  }
+  blocks.emplace_back(std::move(table));
+  return {};
+}
+
+Result<void> add_layer(const ReportContext& context, const Layer& layer, Progress& progress,
+                       Blocks& blocks) {
+  const ReportRequest& request = context.request;
+  store::Store& store = context.services.store;
+  Painted painted{layer, {}, {}, {}, {}, {}};
+  auto areas = STRATA_TRY(request.room->queries().key_areas(layer.slug));
+  painted.areas = std::move(areas);
+  std::vector<std::int64_t> keys;
+  for (const auto& [key, area] : painted.areas) keys.push_back(key);
+  if (keys.empty()) return {};
+  store::RecordQuery query;
+  query.keys = keys;
+  auto page = STRATA_TRY(store.records().page(*layer.table, request.reader.role, query));
+  painted.page = std::move(page);
+  auto names = STRATA_TRY(record_names(store, *layer.table, request.reader.role, std::move(keys),
+                                       {}, context.words.tag));
+  painted.names = std::move(names);
+  auto words = STRATA_TRY(
+      words_of(store, painted.page.table.columns, request.reader.role, context.words.tag));
+  painted.words = std::move(words);
+  const auto measures =
+      RecordMeasures::of_place(context.services, {painted.page.table, request.room->model(), layer},
+                               painted.page.table.columns);
+  if (!measures) return tl::unexpected(measures.error());
+  const std::size_t total = painted.page.records.size(),
+                    shown = std::min(total, request.max_records);
+  if (shown == 0) return {};
+  blocks.emplace_back(report::Heading{2, layer_name(context, layer)});
+  if (shown < total)
+    blocks.emplace_back(report::Paragraph{
+        {{filled(context.words.omitted, std::to_string(shown), std::to_string(total))}}});
+  for (std::size_t i = 0; i < shown; ++i) {
+    if (progress.cancelled()) return cancelled_problem();
+    progress.report(static_cast<double>(i) / static_cast<double>(shown),
+                    "Describing record " + std::to_string(i + 1) + " of " + std::to_string(shown));
+    STRATA_TRY(add_record(context, painted, painted.page.records[i], *measures, blocks));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Blocks> findings_part(const ReportContext& context, Progress& progress) {
+  Blocks blocks;
+  for (auto layer = context.request.layers.rbegin(); layer != context.request.layers.rend();
+       ++layer)
+    if (layer->table) STRATA_TRY(add_layer(context, *layer, progress, blocks));
+  return blocks;
+}
+
+}  // namespace strata::app
