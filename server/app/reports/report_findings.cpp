@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <fstream>
 
 #include "app/figures/class_names.h"
 #include "app/records/record_measures.h"
 #include "app/records/record_words.h"
 #include "app/reports/report_parts.h"
+#include "core/uuid.h"
 #include "domain/scene/model.h"
 #include "domain/tables/attachment.h"
 #include "domain/tables/column_value.h"
@@ -74,6 +76,21 @@ std::vector<std::pair<std::string, std::string>> facts_of(const ReportContext& c
   return facts;
 }
 
+// Writes a picture to a file, because the pictures of all records can be larger than the memory.
+Result<report::CellPicture> stored(const ReportContext& context,
+                                   const std::vector<std::uint8_t>& bytes,
+                                   const std::string& name) {
+  auto file = std::make_shared<TemporaryFile>(context.folder / (to_string(random_uuid()) + ".jpg"));
+  std::ofstream out(file->path, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()),
+            static_cast<std::streamsize>(bytes.size()));
+  if (!out.flush())
+    return fail(ErrorCode::storage_full, "Report not written",
+                "The server could not write a picture to its disk. Free disk space.");
+  context.files.push_back(file);
+  return report::CellPicture{file->path, kPlaceWidth_mm, name};
+}
+
 // Returns small versions of the pictures of a record. Leaves out files that cannot be read, because
 // a report without one of them is better than no report.
 Result<std::vector<report::Cell>> pictures_of(const ReportContext& context, const Painted& painted,
@@ -102,9 +119,8 @@ Result<std::vector<report::Cell>> pictures_of(const ReportContext& context, cons
     auto small = make_thumbnail(bytes, kPictureSide);
     if (!small) continue;
     report::Cell cell{file->name};
-    cell.picture =
-        report::CellPicture{std::make_shared<const std::vector<std::uint8_t>>(std::move(*small)),
-                            kPlaceWidth_mm, file->name};
+    auto picture = STRATA_TRY(stored(context, *small, file->name));
+    cell.picture = std::move(picture);
     cells.push_back(std::move(cell));
   }
   return cells;

@@ -150,12 +150,14 @@ export class StrataServer {
     if (!this.session) await this.sign_in_owner({ token: this.token });
     return this.session;
   }
-  async sign_in_owner(login) {
+  async sign_in_owner(login, tries = 3) {
     const answer = await fetch(`${this.url}/api/v1/login`, {
       method: "POST",
       headers: { "Content-Type": "application/json", Origin: this.url },
       body: JSON.stringify(login),
     });
+    // another call at the same time can end all other sessions of the owner, also the new one
+    if (answer.status === 401 && tries > 1) return this.sign_in_owner(login, tries - 1);
     if (!answer.ok) throw new Error(`the owner's sign-in: ${answer.status} ${await answer.text()}`);
     this.session = answer.headers.get("set-cookie").split(";")[0].split("=")[1];
   }

@@ -395,6 +395,18 @@ export const particulars = {
       },
     }),
   },
+  make_report: {
+    path: { model: one("wall") },
+    // few drawings, as each takes a second
+    ...json({
+      by_name: {
+        figures: one([], [{ direction: "top", scale: 20 }], [{ view: "west" }], [{}]),
+        record_pictures: one(false, false, 1),
+        max_records: one(0, 1, -1),
+        logo: one("", "bm8="),
+      },
+    }),
+  },
   rollout: {
     path: { model: one("wall") },
     ...json({
