@@ -103,11 +103,11 @@ struct Document {
   std::string title, subject, author;
   std::string language = "en";  // BCP 47, such as "de" or "es-MX"
   std::chrono::sys_seconds created{};
-  std::optional<Logo> logo{};  // beside the title
+  std::optional<Logo> logo{};  // next to the title
   // The label and value of the rows below the title, such as "Object number" and "1927.14".
   std::vector<std::pair<std::string, std::string>> title_block{};
   std::string header{};  // on each page except the first one
-  std::string footer{};  // on each page, beside its number
+  std::string footer{};  // on each page, next to its number
   std::vector<Block> blocks{};
   Wording wording{};
 };

@@ -11,7 +11,7 @@ namespace strata::report {
 // Write a document on A4 pages to a new file. The same document always gives the same bytes. The
 // memory that a writer needs is that of the texts and of one decoded picture, and `write_pdf` also
 // needs the JPEG files and the decoded PNG files of one page. Both check each picture completely.
-// `write_pdf` writes a second file beside `file`, and `write_docx` one for each turned or CMYK
+// `write_pdf` writes a second file next to `file`, and `write_docx` one for each turned or CMYK
 // picture. They delete these files, and after an error also `file`. Do not throw. Thread-safe.
 //
 // Errors: `invalid` for a document with wrong values (document.h), with their place in `field`, and

@@ -61,14 +61,14 @@ export const isSameSheet = (a: RolloutSheet, b: RolloutSheet): boolean =>
  * are fixed, so the sheet stays the same.
  */
 export function withinSheet(sheet: RolloutSheet, part: SheetPart): Within {
-  const { axis, shape, radius, half_angle, side, from, to } = sheet;
+  const { axis, shape, radius, side, from, to } = sheet;
   return {
     unrolled: {
       axis,
       // The server finds the same cross section again.
       ...(shape === "general_cylinder"
         ? { shape }
-        : { radius, ...(shape === "cone" ? { half_angle } : {}) }),
+        : { radius, ...(shape === "cone" ? { half_angle: sheet.half_angle } : {}) }),
       side,
       // The middle of the gap, or the end of a wall that goes all around.
       cut: ((from + to) / 2 + 180) % 360,
