@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <qpdf/JSON.hh>
 #include <qpdf/QPDF.hh>
 #include <qpdf/QPDFObjectHandle.hh>
 #include <qpdf/QPDFWriter.hh>
@@ -140,7 +141,7 @@ Object metadata(QPDF& pdf, const Document& document) {
 void add_alternatives(Object element, const std::vector<std::string>& alternatives,
                       std::size_t& next) {
   if (element.isArray()) {
-    for (Object child : element.aitems()) add_alternatives(child, alternatives, next);
+    for (const Object& child : element.aitems()) add_alternatives(child, alternatives, next);
     return;
   }
   if (!element.isDictionary()) return;  // the number of a part of a page

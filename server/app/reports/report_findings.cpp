@@ -44,9 +44,11 @@ std::string cell_text(const ReportContext& context, const Painted& painted, cons
     const auto known = painted.words.find(*column.target);
     if (known != painted.words.end()) return known->second.name(value->second.get<std::int64_t>());
   }
-  std::string text = column.kind == ColumnKind::numeric
-                         ? number_in(context.words, value->second.get<double>())
-                         : print_value(column, value->second);
+  std::string text = print_value(column, value->second);
+  // All digits of the value remain.
+  const auto point = text.find('.');
+  if (column.kind == ColumnKind::numeric && point != std::string::npos)
+    text.replace(point, 1, context.words.decimal);
   if (!column.unit.empty()) text += " " + column.unit;
   return text;
 }

@@ -396,7 +396,7 @@ TEST(Report, pictures_that_cannot_be_read_are_refused) {
 
 TEST(Report, wrong_values_are_refused_with_their_place) {
   const Folder folder;
-  const auto refused = [&](Document document) {
+  const auto refused = [&](const Document& document) {
     Progress progress;
     const auto written = write_docx(document, folder.path / "wrong.docx", progress);
     EXPECT_FALSE(written);
