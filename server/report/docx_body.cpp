@@ -46,13 +46,7 @@ void add_run(xml_node paragraph, const Run& run) {
   }
   if (is_right_to_left(run.text)) properties.append_child("w:rtl");
   if (!properties.first_child()) node.remove_child(properties);
-  for (std::size_t at = 0; at <= run.text.size();) {
-    const std::size_t end = std::min(run.text.find('\n', at), run.text.size());
-    if (at > 0) node.append_child("w:br");
-    if (end > at)
-      set(add_text(node, "w:t", run.text.substr(at, end - at)), "xml:space", "preserve");
-    at = end + 1;
-  }
+  add_lines(node, run.text);
 }
 
 // Writes a swatch as shaded spaces, so that it is part of the text.

@@ -153,23 +153,13 @@ DocxPart numbering() {
   return {"word/numbering.xml", xml_text(xml)};
 }
 
-void add_lines(xml_node paragraph, const std::string& text) {
-  xml_node run = paragraph.append_child("w:r");
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    if (at > 0) run.append_child("w:br");
-    set(add_text(run, "w:t", text.substr(at, end - at)), "xml:space", "preserve");
-    at = end + 1;
-  }
-}
-
 DocxPart header(const Document& document) {
   pugi::xml_document xml;
   xml_node root = begin_xml(xml, "w:hdr");
   set(root, "xmlns:w", kMain);
   xml_node paragraph = root.append_child("w:p");
   add_value(paragraph.append_child("w:pPr"), "w:pStyle", "Header");
-  add_lines(paragraph, document.header);
+  add_lines(paragraph.append_child("w:r"), document.header);
   return {"word/header.xml", xml_text(xml)};
 }
 
@@ -186,7 +176,7 @@ DocxPart footer(const Document& document) {
   set(root, "xmlns:w", kMain);
   xml_node paragraph = root.append_child("w:p");
   add_value(paragraph.append_child("w:pPr"), "w:pStyle", "Footer");
-  add_lines(paragraph, document.footer);
+  add_lines(paragraph.append_child("w:r"), document.footer);
   paragraph.append_child("w:r").append_child("w:tab");
   add_field(paragraph, "PAGE");
   set(add_text(paragraph.append_child("w:r"), "w:t", " / "), "xml:space", "preserve");

@@ -29,4 +29,7 @@ pugi::xml_node add_value(pugi::xml_node parent, const char* element, const Value
 // Appends an element that contains a text.
 pugi::xml_node add_text(pugi::xml_node parent, const char* element, const std::string& text);
 
+// Appends a text to a run of WordprocessingML, which has a separate element for each line end.
+void add_lines(pugi::xml_node run, const std::string& text);
+
 }  // namespace strata::report

@@ -41,7 +41,7 @@ struct ReportRequest {
   };
 
   std::shared_ptr<room::Room> room;  // as visible to the reader
-  Author reader;                     // who sees the report
+  Author reader;                     // sees what this user may see
   ReportFormat format = ReportFormat::docx;
   ReportLanguage language = ReportLanguage::en;
   std::string title{}, subject{}, author{};

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "app/figures/class_names.h"
 #include "app/figures/figures.h"
@@ -42,25 +43,37 @@ room::LayerView& view_of(FigureRequest& figure, LayerId layer) {
   return figure.shown.shown.layers.emplace_back(std::move(view));
 }
 
+// Returns the names of the records that are painted on a layer. Returns no names for more keys than
+// a legend can show.
+Result<RecordNames> painted_names(const ReportContext& context, const Layer& layer) {
+  constexpr std::size_t kMaxKeys = 40;
+  const auto areas = STRATA_TRY(context.request.room->queries().key_areas(layer.slug));
+  if (areas.size() > kMaxKeys) return RecordNames{};
+  std::vector<std::int64_t> keys;
+  for (const auto& [key, area] : areas) keys.push_back(key);
+  return record_names(context.services.store, *layer.table, context.request.reader.role,
+                      std::move(keys), {}, context.words.tag);
+}
+
 // Gives the keys of records their names, so that the legend lists them. Leaves out layers with more
 // keys than a legend can show.
-Result<void> name_keys(const ReportContext& context, FigureRequest& figure) {
-  constexpr std::size_t kMaxKeys = 40;
+Result<void> name_keys(const ReportContext& context, std::map<LayerId, RecordNames>& known,
+                       FigureRequest& figure) {
   for (const Layer& layer : figure.layers) {
     const auto& own = figure.shown.shown.of(layer.id).palette;
     Palette palette = own ? *own : layer.palette;
     if (!layer.table || !lists_values(palette)) continue;
-    const auto areas = STRATA_TRY(figure.room->queries().key_areas(layer.slug));
-    if (areas.size() > kMaxKeys) continue;
-    std::vector<std::int64_t> keys;
-    for (const auto& [key, area] : areas) keys.push_back(key);
-    const auto names = STRATA_TRY(record_names(context.services.store, *layer.table, figure.role,
-                                               std::move(keys), {}, context.words.tag));
+    auto found = known.find(layer.id);
+    if (found == known.end()) {
+      auto names = STRATA_TRY(painted_names(context, layer));
+      found = known.emplace(layer.id, std::move(names)).first;
+    }
+    if (found->second.empty()) continue;
     std::vector<Palette::Point> points;
-    for (const auto& [key, name] : names) {
+    for (const auto& [key, name] : found->second) {
       const auto value = static_cast<double>(key);
-      const Palette::Point* known = point_of(palette, value);
-      Palette::Point point = known && known->at == value ? *known : Palette::Point{};
+      const Palette::Point* listed = point_of(palette, value);
+      Palette::Point point = listed && listed->at == value ? *listed : Palette::Point{};
       point.at = value;
       point.color = color_of(palette, value);
       point.label = name.empty() ? filled(context.words.record, std::to_string(key)) : name;
@@ -78,6 +91,7 @@ Result<Blocks> figures_part(const ReportContext& context, Progress& progress) {
   Blocks blocks;
   const auto& figures = context.request.figures;
   const Model model = context.request.room->model();
+  std::map<LayerId, RecordNames> names;  // of the layers of earlier figures
   for (std::size_t i = 0; i < figures.size(); ++i) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(
@@ -87,7 +101,7 @@ Result<Blocks> figures_part(const ReportContext& context, Progress& progress) {
     const glm::dvec2 size = size_on(figure.plane, model);
     const glm::dvec2& sheet = size.y > kTallShape * size.x ? kTall_mm : kWide_mm;
     set_sheet(figure, sheet, kDpi);
-    STRATA_TRY(name_keys(context, figure));
+    STRATA_TRY(name_keys(context, names, figure));
     Progress unwatched;
     auto file =
         make_figure(context.services.store, context.budget, figure, context.folder, unwatched);

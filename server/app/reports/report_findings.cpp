@@ -208,7 +208,8 @@ Result<Blocks> findings_part(const ReportContext& context, Progress& progress) {
   Blocks blocks;
   for (auto layer = context.request.layers.rbegin(); layer != context.request.layers.rend();
        ++layer)
-    if (layer->table) STRATA_TRY(add_layer(context, *layer, progress, blocks));
+    if (layer->table && context.request.max_records > 0)
+      STRATA_TRY(add_layer(context, *layer, progress, blocks));
   return blocks;
 }
 

@@ -61,9 +61,9 @@ Result<report::Block> layer_table(const ReportContext& context, const Layer& lay
                       {}};
   for (std::size_t i = 0; i < listed; ++i) {
     const query::Quantity& quantity = all.classes[i];
-    std::string name = quantity_text(quantity, quantity_label(quantity, layer, names));
-    if (!layer.unit.empty() && !layer.table && quantity_label(quantity, layer, names).empty())
-      name += " " + layer.unit;
+    const std::string label = quantity_label(quantity, layer, names);
+    std::string name = quantity_text(quantity, label);
+    if (!layer.unit.empty() && !layer.table && label.empty()) name += " " + layer.unit;
     table.rows.push_back(
         row_of(words, quantity, all, std::move(name), color_of_class(quantity, layer.palette)));
   }

@@ -21,8 +21,7 @@ struct ReportWords {
   // Directions of figures.
   const char *top, *bottom, *front, *back, *left, *right;
   // Quantities.
-  const char *class_name, *pieces, *area, *share, *total, *largest_classes, *nothing_painted,
-      *no_record;
+  const char *class_name, *pieces, *area, *share, *total, *largest_classes, *nothing_painted;
   // Findings.
   const char *record, *length, *points, *place, *omitted, *yes, *no;
   // Methods.

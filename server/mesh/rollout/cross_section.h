@@ -1,9 +1,13 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <numbers>
 #include <vector>
 
 namespace strata::mesh {
+
+inline constexpr double kTurn = 2 * std::numbers::pi;
+inline constexpr double kAngleRounding = 1e-9;
 
 // The cross section of a general cylinder: a closed polygon around the axis that each ray from the
 // axis meets exactly once. Angles are in radians, counterclockwise, and may exceed a turn.

@@ -13,8 +13,8 @@ double DevelopedSurface::radius_at(double angle, double slant) const {
   return section ? section->radius(angle) : radius + slant * std::sin(half_angle);
 }
 
-double DevelopedSurface::arc(double angle, double slant) const {
-  return section ? section->arc(angle) : angle * radius_at(angle, slant);
+double DevelopedSurface::arc(double angle) const {
+  return section ? section->arc(angle) : angle * radius;
 }
 
 double DevelopedSurface::min_stretch(double slant) const {

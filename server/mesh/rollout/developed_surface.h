@@ -36,8 +36,9 @@ struct DevelopedSurface {
   DevelopedShape shape() const;
   bool is_cone() const { return half_angle != 0; }
   double radius_at(double angle, double slant) const;
-  // Returns the length around the axis at this slant from the angle 0 to an angle.
-  double arc(double angle, double slant) const;
+  // Returns the length around the axis of a cylinder or general cylinder from the angle 0 to an
+  // angle.
+  double arc(double angle) const;
   // The smallest and the largest length around the axis at this slant per radian.
   double min_stretch(double slant) const;
   double max_stretch(double slant) const;

@@ -7,6 +7,10 @@
 
 namespace strata::mesh {
 
+// Faces at a smaller angle to the axis than about 20° are floors, lids and rims.
+inline constexpr double kFloorCosine = 0.94;
+inline constexpr std::size_t kTrianglesAtOnce = 1u << 16;  // between two checks of the question
+
 // A triangle or patch as a sample of the surface.
 struct FaceSample {
   glm::dvec3 place;  // its middle, relative to a center
@@ -18,7 +22,6 @@ struct FaceSample {
 // directions. Checks the current question.
 template <class See>
 void for_each_face(const Geometry& geometry, const glm::dvec3& center, See see) {
-  constexpr std::size_t kTrianglesAtOnce = 1u << 16;
   for (std::size_t t = 0; t < geometry.triangle_count(); ++t) {
     if (t % kTrianglesAtOnce == 0) check_question();
     const auto at = [&](std::size_t k) {

@@ -3,7 +3,6 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "mesh/parallel.h"
@@ -12,10 +11,8 @@
 namespace strata::mesh {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kCorners = 720;
-constexpr int kRays = 128;                 // along the axis
-constexpr double kMaxDeviation = 1.0 / 3;  // as a share of the radius
+constexpr int kRays = 128;  // along the axis
 // A corner is at least this share of the mean radius away from the axis.
 constexpr double kMinRadius = 1e-3;
 

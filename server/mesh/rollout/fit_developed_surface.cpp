@@ -13,13 +13,10 @@
 namespace strata::mesh {
 namespace {
 
-constexpr int kRounds = 6;  // of reweighted least squares
-// Faces at a smaller angle to the axis than about 20° are floors, lids and rims.
-constexpr double kFloorCosine = 0.94;
+constexpr int kRounds = 6;             // of reweighted least squares
 constexpr double kMinWallShare = 0.1;  // of the area; below, the model is a flat sheet
 constexpr double kMinAngle = std::numbers::pi / 6;
-constexpr double kMaxDeviation = 1.0 / 3;  // as a share of the radius
-constexpr double kMaxSlope = 3.7;          // tan 75°: steeper cones are almost flat
+constexpr double kMaxSlope = 3.7;  // tan 75°: steeper cones are almost flat
 // A cone is chosen if it reduces the deviation by this factor and is not almost a cylinder.
 constexpr double kConeGain = 0.7, kMinConeSlope = 0.0175;  // tan 1°
 
@@ -96,11 +93,10 @@ Walls walls_around(const Geometry& geometry, const DevelopedSurface& axis) {
       walls.inside.push_back(wall);
       walls.inside_area += sample.area;
     }
-    const double sector = (place.angle / (2 * std::numbers::pi) + 0.5) * kSectors;
+    const double sector = (place.angle / kTurn + 0.5) * kSectors;
     is_covered[static_cast<std::size_t>(std::clamp(sector, 0.0, kSectors - 1.0))] = true;
   });
-  walls.angle =
-      static_cast<double>(std::ranges::count(is_covered, true)) * 2 * std::numbers::pi / kSectors;
+  walls.angle = static_cast<double>(std::ranges::count(is_covered, true)) * kTurn / kSectors;
   return walls;
 }
 

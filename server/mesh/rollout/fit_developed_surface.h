@@ -32,6 +32,9 @@ struct FitRequest {
   bool operator==(const FitRequest&) const = default;
 };
 
+// A fitted surface that deviates more, as a share of its radius, is refused.
+inline constexpr double kMaxDeviation = 1.0 / 3;
+
 struct DevelopedFit {
   DevelopedSurface surface;
   RolloutSide side = RolloutSide::outside;

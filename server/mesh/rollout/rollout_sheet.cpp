@@ -6,20 +6,15 @@
 #include <limits>
 #include <numbers>
 
-#include "domain/people/question.h"
 #include "domain/scene/up.h"
+#include "mesh/rollout/face_samples.h"
 #include "mesh/rollout/fit_cross_section.h"
 
 namespace strata::mesh {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kRounding = 1e-9;  // of an angle
 constexpr int kSectors = 720;
 constexpr int kMinGap = 3;  // in sectors; smaller gaps come from rounding
-// Faces at a smaller angle to the axis than about 20° are floors, lids and rims.
-constexpr double kFloorCosine = 0.94;
-constexpr std::size_t kTrianglesAtOnce = 1u << 16;
 
 // Returns the equal angle from 0 to 2π.
 double wrapped(double angle) {
@@ -87,7 +82,7 @@ void RolloutSheet::find_bounds() {
 
 glm::dvec2 RolloutSheet::on_sheet(const SurfacePlace& place) const {
   if (!surface.is_cone())
-    return {turn() * (surface.arc(place.angle, 0) - surface.arc(middle(), 0)), place.slant};
+    return {turn() * (surface.arc(place.angle) - surface.arc(middle())), place.slant};
   const double sine = std::sin(surface.half_angle), apex = surface.apex();
   const double angle = turn() * (place.angle - middle()) * std::abs(sine),
                from_apex = place.slant - apex;
@@ -95,7 +90,7 @@ glm::dvec2 RolloutSheet::on_sheet(const SurfacePlace& place) const {
 }
 
 double RolloutSheet::beyond_cut() const {
-  if (to - from < kTurn - kRounding) return 0;
+  if (to - from < kTurn - kAngleRounding) return 0;
   // The sector of a cone leaves a gap on the plane. Both ends continue to the middle of the gap.
   const double fan = kTurn * std::abs(std::sin(surface.half_angle));
   return surface.is_cone() ? std::min(kTurn / 2, (kTurn - fan) / 2 / fan * kTurn) : kTurn / 2;
@@ -103,7 +98,7 @@ double RolloutSheet::beyond_cut() const {
 
 RolloutSheet::SurfacePlace RolloutSheet::unbounded_place(const glm::dvec2& sheet) const {
   if (surface.section)
-    return {surface.section->angle_at(surface.arc(middle(), 0) + turn() * sheet.x), sheet.y};
+    return {surface.section->angle_at(surface.arc(middle()) + turn() * sheet.x), sheet.y};
   if (!surface.is_cone()) return {middle() + turn() * sheet.x / surface.radius, sheet.y};
   const double sine = std::sin(surface.half_angle), apex = surface.apex();
   const double sign = sine < 0 ? -1 : 1;
@@ -172,9 +167,9 @@ Result<RolloutSheet> plan_rollout(const Geometry& geometry, const DevelopedFit& 
           std::minmax({corners[0].angle, corners[1].angle, corners[2].angle});
       double from = wrapped(first - start);
       // Because of rounding, a wall that begins or ends at the cut can cross it.
-      if (from > kTurn - kRounding) from -= kTurn;
+      if (from > kTurn - kAngleRounding) from -= kTurn;
       const double to = from + (last - first);
-      low = std::min(low, to > kTurn + kRounding ? 0 : from);
+      low = std::min(low, to > kTurn + kAngleRounding ? 0 : from);
       high = std::max(high, std::min(to, kTurn));
     });
   }
@@ -186,7 +181,7 @@ Result<RolloutSheet> plan_rollout(const Geometry& geometry, const DevelopedFit& 
   return sheet;
 }
 
-Result<FittedSheet> fit_sheet(const SearchTree& tree, const Geometry& geometry, FitRequest request,
+Result<FittedSheet> fit_sheet(const TreeOf& tree_of, const Geometry& geometry, FitRequest request,
                               const std::optional<double>& cut, std::string_view up) {
   const UpFrame frame = up_frame(up);
   request.up = frame.up;
@@ -195,7 +190,7 @@ Result<FittedSheet> fit_sheet(const SearchTree& tree, const Geometry& geometry, 
   fitted.fit = STRATA_TRY(fit_developed_surface(geometry, request));
   fitted.sheet = STRATA_TRY(plan_rollout(geometry, fitted.fit, cut));
   if (request.shape == DevelopedShape::general_cylinder)
-    STRATA_TRY(fit_cross_section(tree, geometry, request, fitted));
+    STRATA_TRY(fit_cross_section(*tree_of(), geometry, request, fitted));
   return fitted;
 }
 

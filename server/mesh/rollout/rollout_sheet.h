@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -52,11 +54,14 @@ struct FittedSheet {
 Result<RolloutSheet> plan_rollout(const Geometry& geometry, const DevelopedFit& fit,
                                   const std::optional<double>& cut);
 
-// Fits a surface and plans its rollout. `tree` is of `geometry`. `up` is one of kUpDirections: a
-// fitted axis points up, and the angle 0 is the front of the model. The request's own values for
-// these two have no effect. Errors: those of fit_developed_surface, plan_rollout and
+// Returns the tree of a geometry. The tree of a large scan takes a while to build.
+using TreeOf = std::function<std::shared_ptr<const SearchTree>()>;
+
+// Fits a surface and plans its rollout. Calls `tree_of` only for a general cylinder. `up` is one of
+// kUpDirections: a fitted axis points up, and the angle 0 is the front of the model. The request's
+// own values for these two have no effect. Errors: those of fit_developed_surface, plan_rollout and
 // fit_cross_section.
-Result<FittedSheet> fit_sheet(const SearchTree& tree, const Geometry& geometry, FitRequest request,
+Result<FittedSheet> fit_sheet(const TreeOf& tree_of, const Geometry& geometry, FitRequest request,
                               const std::optional<double>& cut, std::string_view up);
 
 }  // namespace strata::mesh

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 #include "mesh/parallel.h"
 #include "mesh/texels/surface_map.h"
@@ -12,9 +11,8 @@ namespace strata::query {
 namespace {
 
 using mesh::DevelopedSurface;
+using mesh::kTurn;
 using mesh::RolloutSheet;
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kRounding = 1e-9;  // of an angle
 
 class Unrolled {
  public:
@@ -25,7 +23,7 @@ class Unrolled {
         sheet_(rays.sheet()),
         origin_(origin),
         area_(area),
-        half_((sheet_.to - sheet_.from) / 2 + kRounding),
+        half_((sheet_.to - sheet_.from) / 2 + mesh::kAngleRounding),
         beyond_cut_(sheet_.beyond_cut()) {}
 
   std::uint64_t texels_of(std::uint32_t slot) const {

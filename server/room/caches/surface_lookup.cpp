@@ -54,7 +54,8 @@ Result<std::shared_ptr<const mesh::FittedSheet>> SurfaceLookup::sheet(
     }
   }
   // Without the lock, because the question of each user must be able to end.
-  auto fitted = STRATA_TRY(mesh::fit_sheet(*tree(), *geometry_, request, cut, up));
+  auto fitted =
+      STRATA_TRY(mesh::fit_sheet([this] { return tree(); }, *geometry_, request, cut, up));
   auto sheet = std::make_shared<const mesh::FittedSheet>(std::move(fitted));
   const std::lock_guard lock(sheets_mutex_);
   std::erase_if(sheets_, is_same);

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <mutex>
-#include <numbers>
 #include <random>
 
 #include "mesh/analysis/tangent_frame.h"
@@ -18,7 +17,6 @@ namespace {
 using test::Cuts;
 using test::Shape;
 using test::Surface;
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kLength = 60;  // of the axis
 constexpr Cuts kOneChart{1, 1, 0.4, 1}, kManyCharts{3, 4, 0.7, 0.75};
 const glm::dvec3 kAlong = glm::normalize(glm::dvec3(0.3, -0.2, 1));
@@ -79,11 +77,14 @@ Shape cylinder_over(const Curve& curve, bool inward, double roughness = 0) {
   return shape;
 }
 
+TreeOf tree_of(const Geometry& geometry) {
+  return [&] { return std::make_shared<SearchTree>(std::make_shared<Geometry>(geometry)); };
+}
+
 FittedSheet unroll(const Geometry& geometry, FitRequest request = {},
                    const std::optional<double>& cut = {}) {
   request.shape = DevelopedShape::general_cylinder;
-  const SearchTree tree(std::make_shared<Geometry>(geometry));
-  const auto fitted = fit_sheet(tree, geometry, request, cut, "z");
+  const auto fitted = fit_sheet(tree_of(geometry), geometry, request, cut, "z");
   EXPECT_TRUE(fitted) << fitted.error().detail;
   return fitted ? *fitted : FittedSheet{};
 }
@@ -219,10 +220,9 @@ TEST(GeneralCylinder, shapes_without_a_unique_axis_are_refused) {
   for (TriangleMesh* mesh : {&cube, &flat}) {
     atlas.corner_uvs.assign(mesh->triangles.size(), glm::vec2(0.5f));
     const Geometry geometry = build_geometry(*mesh, atlas);
-    const SearchTree tree(std::make_shared<Geometry>(geometry));
     FitRequest request;
     request.shape = DevelopedShape::general_cylinder;
-    const auto fitted = fit_sheet(tree, geometry, request, {}, "z");
+    const auto fitted = fit_sheet(tree_of(geometry), geometry, request, {}, "z");
     ASSERT_FALSE(fitted);
     EXPECT_EQ(fitted.error().field, "axis");
   }

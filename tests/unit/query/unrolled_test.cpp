@@ -67,8 +67,10 @@ Shape scroll() {
 
 RolloutSheet sheet_of(const Surface& surface, const FitRequest& request = {},
                       const std::optional<double>& cut = {}) {
-  const mesh::SearchTree tree(std::make_shared<mesh::Geometry>(surface.geometry));
-  const auto fitted = mesh::fit_sheet(tree, surface.geometry, request, cut, "z");
+  const auto tree_of = [&] {
+    return std::make_shared<mesh::SearchTree>(std::make_shared<mesh::Geometry>(surface.geometry));
+  };
+  const auto fitted = mesh::fit_sheet(tree_of, surface.geometry, request, cut, "z");
   EXPECT_TRUE(fitted) << fitted.error().detail;
   return fitted ? fitted->sheet : RolloutSheet{};
 }

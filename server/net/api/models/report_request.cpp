@@ -71,7 +71,7 @@ Result<void> read_logo(const std::string& text, ReportRequest& report) {
   return {};
 }
 
-// Sets the layers of the report, from bottom to top.
+// Sets the layers of the report.
 Result<void> read_layers(const protocol::ReportRequest& body, ReportRequest& report) {
   const std::vector<Layer> all = report.room->layers().all();
   if (!body.layers) {
@@ -84,7 +84,6 @@ Result<void> read_layers(const protocol::ReportRequest& body, ReportRequest& rep
       return std::ranges::find(chosen, layer.id, &Layer::id) != chosen.end();
     });
   }
-  std::ranges::stable_sort(report.layers, {}, &Layer::order);
   return {};
 }
 
@@ -172,7 +171,7 @@ Result<ReportRequest> read_report_request(const RouteContext& context, const Req
   const auto drawing =
       STRATA_TRY(figure_request(context, request, report.room, with_layers(report)));
   report.shown = drawing.shown;
-  report.layers = drawing.layers;
+  report.layers = drawing.layers;  // from bottom to top
   STRATA_TRY(read_figures(context, request, body, report));
   report.max_records = static_cast<std::size_t>(body.max_records);
   report.record_pictures = body.record_pictures;
