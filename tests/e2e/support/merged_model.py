@@ -73,9 +73,9 @@ class MergedModel(PaintedModel):
     def check_repeats(self, count):
         """Sends complete strokes again. Each batch gets its first response."""
         with self.book.lock:
-            strokes = self.random.sample(
-                sorted(self.book.strokes), min(count, len(self.book.strokes))
-            )
+            whole = sorted(self.book.strokes.keys() - self.book.continued)
+        assert whole, "no stroke was painted through one connection"
+        strokes = self.random.sample(whole, min(count, len(whole)))
         for stroke in strokes:
             again = wait_for(lambda: self.send_again(self.book.strokes[stroke]), "a repeat")
             with self.book.lock:
@@ -95,6 +95,8 @@ class MergedModel(PaintedModel):
                 answers = {}
                 while len(answers) < len(messages) - 1:
                     answer = live.receive_until("saved", "unsaved", "problem")
+                    if answer["op"] == "problem":
+                        assert answer["status"] in (404, 429, 503), answer
                     if answer["op"] != "saved":
                         return None
                     if answer.get("stroke") == messages[0]["stroke"]:

@@ -17,6 +17,9 @@ class Book:
         self.edits = {}  # sequence -> (layer slug, edit, response)
         self.repeats = []  # (method, path, body, key, response): HTTP edits to send again
         self.strokes = {}  # id -> messages of a complete live stroke, to send them again
+        # Strokes that may have begun at a server that was lost. The next server has not seen their
+        # first batches, so it refuses to repeat these (409, Batch too old).
+        self.continued = set()
         self.faults = []
         self.stopping = threading.Event()
 
@@ -139,7 +142,9 @@ class LivePainter(Painter):
             ),
         ]
         saved = set()
+        continued = False
         while len(saved) < len(batches):
+            continued = bool(saved)
             try:
                 with self.connect() as live:
                     live.hello()
@@ -158,6 +163,8 @@ class LivePainter(Painter):
                 time.sleep(0.02)
         with self.book.lock:
             self.book.strokes[stroke] = messages
+            if continued:
+                self.book.continued.add(stroke)
 
     def collect(self, live, layer, edit, stroke, batches, ids, saved):
         while len(saved) < len(batches):
