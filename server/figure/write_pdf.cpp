@@ -4,12 +4,13 @@
 #include "figure/cairo_owners.h"
 #include "figure/cairo_sheet.h"
 #include "figure/paper.h"
+#include "figure/pdf_file.h"
 #include "figure/writers.h"
 
 namespace strata::figure {
 namespace {
 
-constexpr double kPoints_per_mm = 72 / kInch_mm;
+constexpr double kPointsPerMm = 72 / kInch_mm;
 
 }  // namespace
 
@@ -19,14 +20,14 @@ Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Documen
   const auto jpeg = drawing_jpeg(drawing);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.7, "Writing the file");
-  const CairoSurface page(cairo_pdf_surface_create(path.c_str(), sheet.size.x * kPoints_per_mm,
-                                                   sheet.size.y * kPoints_per_mm));
-  cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_TITLE, document.title.c_str());
-  cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_AUTHOR, document.author.c_str());
-  cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_CREATOR, "Strata");
+  PdfFile file(path, sheet.size.x * kPointsPerMm, sheet.size.y * kPointsPerMm);
+  cairo_surface_t* page = file.surface();
+  cairo_pdf_surface_set_metadata(page, CAIRO_PDF_METADATA_TITLE, document.title.c_str());
+  cairo_pdf_surface_set_metadata(page, CAIRO_PDF_METADATA_AUTHOR, document.author.c_str());
+  cairo_pdf_surface_set_metadata(page, CAIRO_PDF_METADATA_CREATOR, "Strata");
   {
-    const CairoContext context(cairo_create(page.get()));
-    cairo_scale(context.get(), kPoints_per_mm, kPoints_per_mm);
+    const CairoContext context(cairo_create(page));
+    cairo_scale(context.get(), kPointsPerMm, kPointsPerMm);
     // cairo writes the JPEG instead of these pixels and uses only their size. It does not modify
     // the JPEG or the pixels.
     const CairoSurface image(cairo_image_surface_create_for_data(
@@ -43,10 +44,9 @@ Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Documen
     cairo_restore(context.get());
     draw_groups(context.get(), sheet);
     cairo_show_page(context.get());
-    cairo_surface_finish(page.get());  // must run while the JPEG exists
-    if (cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return unwritable();
+    const bool is_complete = file.finish();  // must run while the JPEG exists
+    if (!is_complete || cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return unwritable();
   }
-  if (cairo_surface_status(page.get()) != CAIRO_STATUS_SUCCESS) return unwritable();
   return {};
 }
 

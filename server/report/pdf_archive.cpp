@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <memory>
 #include <qpdf/QPDF.hh>
 #include <qpdf/QPDFObjectHandle.hh>
@@ -12,6 +13,7 @@
 #include <stdexcept>
 
 #include "report/time_text.h"
+#include "report/unwritable.h"
 #include "report/xml.h"
 
 namespace strata::report {
@@ -91,6 +93,9 @@ Object info(const Document& document) {
   return dictionary;
 }
 
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
 struct CloseProfile {
   void operator()(void* profile) const { cmsCloseProfile(profile); }
 };
@@ -167,9 +172,11 @@ void mend_objects(QPDF& pdf) {
 
 }  // namespace
 
-void write_archive(const std::filesystem::path& drawn, const std::filesystem::path& file,
-                   const Document& document, const std::vector<std::string>& alternatives) {
+Result<void> write_archive(const std::filesystem::path& drawn, const std::filesystem::path& file,
+                           const Document& document, const std::vector<std::string>& alternatives) {
   QPDF pdf;
+  // cairo names a picture twice if it is twice on a page. QPDF would print a warning.
+  pdf.setSuppressWarnings(true);
   pdf.processFile(drawn.c_str());
   mend_objects(pdf);
   Object root = pdf.getRoot();
@@ -185,12 +192,24 @@ void write_archive(const std::filesystem::path& drawn, const std::filesystem::pa
   }
   pdf.getTrailer().replaceKey("/Info", pdf.makeIndirectObject(info(document)));
 
-  QPDFWriter writer(pdf, file.c_str());
+  // QPDF ignores errors of its own files when it closes them, for example on a full disk.
+  std::unique_ptr<std::FILE, CloseFile> output(std::fopen(file.c_str(), "wb"));
+  if (!output) return unwritable();
+  QPDFWriter writer(pdf);
+  writer.setOutputFile(file.c_str(), output.get(), false);
   writer.setMinimumPDFVersion("1.7");  // the version of PDF/A-2
   writer.setObjectStreamMode(qpdf_o_generate);
   writer.setNewlineBeforeEndstream(true);
   writer.setDeterministicID(true);
-  writer.write();
+  try {
+    writer.write();
+  } catch (const std::exception&) {
+    if (std::ferror(output.get()) != 0) return unwritable();
+    throw;
+  }
+  const bool has_error = std::ferror(output.get()) != 0;
+  if (std::fclose(output.release()) != 0 || has_error) return unwritable();
+  return {};
 }
 
 }  // namespace strata::report

@@ -71,6 +71,8 @@ PdfText::PdfText(cairo_t* context, const std::vector<Run>& runs, const TextStyle
     if (run.italic)
       insert(attributes.get(), pango_attr_style_new(PANGO_STYLE_ITALIC), begin, text.size());
   }
+  // A hyphen inside a long number or address would change it.
+  insert(attributes.get(), pango_attr_insert_hyphens_new(FALSE), 0, text.size());
   pango_layout_set_attributes(layout, attributes.get());
   pango_layout_set_text(layout, text.data(), static_cast<int>(text.size()));
   pango_layout_set_width(layout, std::max(1, static_cast<int>(width * PANGO_SCALE)));

@@ -1,8 +1,7 @@
 // Writes documents as PDF/A. cairo draws the pages, and then QPDF adds what cairo does not write.
-#include <cairo-pdf.h>
-
 #include "core/temporary_file.h"
 #include "figure/cairo_owners.h"
+#include "figure/pdf_file.h"
 #include "report/check_document.h"
 #include "report/page.h"
 #include "report/pdf_archive.h"
@@ -20,21 +19,17 @@ Result<void> write(const Document& requested, const std::filesystem::path& file,
   const Document document = STRATA_TRY(checked(requested));
   const TemporaryFile drawn(file.string() + ".drawn");
   PdfPictures pictures;  // outlives the surface
-  const figure::CairoSurface surface(
-      cairo_pdf_surface_create(drawn.path.c_str(), points(kPageWidth_mm), points(kPageHeight_mm)));
+  figure::PdfFile pages(drawn.path, points(kPageWidth_mm), points(kPageHeight_mm));
   std::vector<std::string> alternatives;
   {
-    const figure::CairoContext context(cairo_create(surface.get()));
+    const figure::CairoContext context(cairo_create(pages.surface()));
     alternatives =
         STRATA_TRY(draw_pages(context.get(), document, pictures, progress, kDrawingShare));
-    cairo_surface_finish(surface.get());
-    if (cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return unwritable();
+    if (!pages.finish() || cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return unwritable();
   }
-  if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) return unwritable();
   if (progress.cancelled()) return cancelled_problem();
   progress.report(kDrawingShare, "Writing the file");
-  write_archive(drawn.path, file, document, alternatives);
-  return {};
+  return write_archive(drawn.path, file, document, alternatives);
 }
 
 }  // namespace

@@ -368,5 +368,15 @@ TEST_F(Files, ADiskThatTakesNothingIsSaid) {
     }
 }
 
+TEST_F(Files, AFullDiskIsAnError) {
+  const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, {}, 100);
+  const fs::path file = folder_ / "full.pdf";
+  fs::create_symlink("/dev/full", file);  // accepts no bytes
+  const auto written = write_figure(layout.finish(2, std::nullopt, {}), drawing_of(layout), 100,
+                                    Format::pdf, {}, file, progress_);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, ErrorCode::storage_full) << written.error().detail;
+}
+
 }  // namespace
 }  // namespace strata::figure

@@ -432,6 +432,19 @@ TEST(Report, a_report_is_written_if_there_is_a_disk_to_write_to) {
   }
 }
 
+TEST(Report, a_full_disk_is_an_error) {
+  const Folder folder;
+  // /dev/full accepts no bytes. The second file is the one that cairo writes.
+  for (const char* name : {"full.pdf", "full.pdf.drawn"}) {
+    fs::create_symlink("/dev/full", folder.path / name);
+    Progress progress;
+    const auto written = write_pdf(example(), folder.path / "full.pdf", progress);
+    ASSERT_FALSE(written) << name;
+    EXPECT_EQ(written.error().code, ErrorCode::storage_full) << written.error().detail;
+    EXPECT_TRUE(fs::is_empty(folder.path));
+  }
+}
+
 TEST(Report, an_empty_document_has_a_page) {
   const Folder folder;
   Progress progress;
