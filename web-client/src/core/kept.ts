@@ -27,7 +27,16 @@ export class Kept<T> {
     try {
       this._storage()?.setItem(this._name, JSON.stringify(value));
     } catch {
-      // The value remains in memory only.
+      this.forget(); // the value remains in memory only
+    }
+  }
+
+  /** Removes the stored value, so it does not return in place of one that could not be stored. */
+  private forget(): void {
+    try {
+      this._storage()?.removeItem(this._name);
+    } catch {
+      // The storage is disabled and contains no value.
     }
   }
 }

@@ -3,10 +3,8 @@
 // to scale. All participants receive finished layers in events. A file is listed until the user
 // saves it.
 
-import { pageLocale } from "../core/locale";
 import { ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
-import type { FigureRequest } from "../core/protocol.gen";
 import type { Job, LayerCreate, ProblemBody, Transfer, TransferReport } from "../core/types";
 import { followJob, jobIsOver } from "../net/follow-job";
 
@@ -60,28 +58,13 @@ export class LayerJobs {
     return { done: this.follow(this.add(name, job), job) };
   }
 
-  /** Follows a job that another part of the page has started. Calls `made` when the job is done. */
-  watch(name: string, job: Job, made: (job: Job) => void): void {
-    void this.follow(this.add(name, job), job, made);
-  }
-
   /**
-   * Starts a job that makes a figure. Returns the key of its entry. Calls `made` when the job is
-   * done. Throws like compute().
+   * Follows a job that another part of the page has started. Returns the key of its entry. Calls
+   * `made` when the job is done.
    */
-  async makeFigure(
-    name: string,
-    wish: FigureRequest,
-    made: (key: number, job: Job) => void,
-  ): Promise<number> {
-    const job = await this._api.json("POST /models/{model}/figures", {
-      path: { model: this._modelId },
-      query: { lang: pageLocale() },
-      body: wish,
-      header: { Prefer: "respond-async" },
-    });
+  watch(name: string, job: Job, made: (job: Job, key: number) => void): number {
     const key = this.add(name, job);
-    void this.follow(key, job, (last) => made(key, last));
+    void this.follow(key, job, (last) => made(last, key));
     return key;
   }
 

@@ -45,7 +45,7 @@ export interface SelectionRequest {
   dialog: "selections" | "save-selection" | "selection-statistics";
 }
 
-/** The dialog that unrolls the model. */
-export interface RolloutDialogRequest {
-  dialog: "rollout";
+/** The dialog that unrolls the model, or the dialog for a condition report. */
+export interface ModelDialogRequest {
+  dialog: "rollout" | "report";
 }

@@ -15,6 +15,7 @@ import "../features/layers/orthophoto-dialog";
 import "../features/layers/pieces-dialog";
 import "../features/records/photos-dialog";
 import "../features/records/record-dialog";
+import "../features/reports/report-dialog";
 import "../features/home/scale-dialog";
 import "../features/surveys/changes-dialog";
 import "./command-palette";

@@ -61,7 +61,7 @@ import type { TourRequest } from "../session/requests";
 import "../features/painting/value-readout";
 import { wantsLessMotion } from "../session/view-control";
 import { dropColumn } from "../features/tables/drop-column";
-import type { RolloutDialogRequest, ViewRequest } from "../session/requests";
+import type { ModelDialogRequest, ViewRequest } from "../session/requests";
 import { Splitter } from "./splitter";
 import { PanelTabs, type PanelTab } from "./panel-tabs";
 import { tabId, tabListStyles } from "../ui/panel/tab-list";
@@ -375,7 +375,7 @@ export class StrataModelPage extends LitElement {
     if (window.innerWidth <= kNarrow) this._panelShown = false;
   }
 
-  private onViewRequest(request: ViewRequest | TourRequest | RolloutDialogRequest): void {
+  private onViewRequest(request: ViewRequest | TourRequest | ModelDialogRequest): void {
     if (request.dialog === "tour") this._tourEditor ??= { tour: request.tour };
     else this._dialog = request;
   }
@@ -482,7 +482,7 @@ export class StrataModelPage extends LitElement {
           <strata-view-panel
             .session=${session}
             @orthophoto=${() => (this._dialog = { dialog: "orthophoto" })}
-            @request=${(event: CustomEvent<ViewRequest | TourRequest | RolloutDialogRequest>) => this.onViewRequest(event.detail)}
+            @request=${(event: CustomEvent<ViewRequest | TourRequest | ModelDialogRequest>) => this.onViewRequest(event.detail)}
           ></strata-view-panel>
         </section>`;
       case "comments":

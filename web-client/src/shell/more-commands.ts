@@ -228,6 +228,7 @@ function ofModel(host: PageHost): Command[] {
   return [
     opening(host, group, "info", texts.model.details, { dialog: "about" }),
     opening(host, texts.figures.title, "document", texts.figures.unroll, { dialog: "rollout" }),
+    opening(host, group, "document", texts.condition_report.open, { dialog: "report" }),
     ...(session.canCurate
       ? [opening(host, group, "measure", texts.model.correct_size, { dialog: "scale" })]
       : []),

@@ -8,7 +8,7 @@ import type { LayerPanelRequest } from "../features/layers/layer-panel";
 import type { WhereRequest } from "../features/painting/brush-panel";
 import type { ModelSession } from "../session/model-session";
 import type {
-  RolloutDialogRequest,
+  ModelDialogRequest,
   SelectionRequest,
   TablePanelRequest,
   TourRequest,
@@ -21,7 +21,7 @@ export type OpenDialog =
   | LayerPanelRequest
   | TablePanelRequest
   | ViewRequest
-  | RolloutDialogRequest
+  | ModelDialogRequest
   | WhereRequest
   | SelectionRequest
   | Extract<TourRequest, { dialog: "kiosks" }>
@@ -136,6 +136,8 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
         @figure=${() => host.show({ dialog: "figure", view: null, unrolled: true })}
         @closed=${closed}
       ></strata-rollout-dialog>`;
+    case "report":
+      return html`<strata-report-dialog .session=${session} @closed=${closed}></strata-report-dialog>`;
     case "kiosks":
       return session.model
         ? html`<strata-kiosks-dialog

@@ -5,8 +5,8 @@
 // images, the light and the section. `pointer` contains the values under the pointer, `painting`
 // the brush and the edits. `together` contains the participants and the followed view, `cursors`
 // their pointers. `views` are the saved views, `surveys` the other surveys of the object,
-// `tours` the tours, `measuring` the measurement, and
-// `figures` the figures to scale. `face` is the face to pick, and `past` the earlier states.
+// `tours` the tours, `measuring` the measurement, `figures` the figures to scale, and `reports` the
+// condition reports. `face` is the face to pick, and `past` the earlier states.
 // Elements subscribe to the parts' state and render it. They change it only through methods. The
 // file is long because it is the only one that connects the parts.
 
@@ -41,6 +41,7 @@ import { Appearance } from "../features/appearance/appearance";
 import { Comments } from "../features/comments/comments";
 import { FacePick } from "../features/figures/face-pick";
 import { Figures } from "../features/figures/figures";
+import { FileJobs } from "../session/file-jobs";
 import { LayerJobs } from "../session/layer-jobs";
 import { LitArea } from "../session/lit-area";
 import { LockWatch } from "../session/lock-watch";
@@ -61,6 +62,7 @@ import { PointerWatch } from "../session/pointer-watch";
 import { RecordEditors } from "../session/record-editors";
 import { RecordHover } from "../features/records/record-hover";
 import { RecordSight } from "../features/records/record-sight";
+import { Reports } from "../features/reports/reports";
 import { Reviews } from "../features/review/reviews";
 import { forget, remember } from "../session/sessions";
 import { Surveys } from "../features/surveys/surveys";
@@ -120,7 +122,9 @@ export class OpenModelSession implements ModelSession {
   readonly views: Views;
   readonly surveys: Surveys;
   readonly tours: Tours;
+  readonly files: FileJobs;
   readonly figures: Figures;
+  readonly reports: Reports;
   readonly face: FacePick;
   readonly tools: ToolManager;
   selection: Selection | null = null;
@@ -372,7 +376,9 @@ export class OpenModelSession implements ModelSession {
       makeSocket,
     );
     this.tours = new Tours(api, modelId, changes("tours"));
-    this.figures = new Figures(api, this.jobs);
+    this.files = new FileJobs(api, this.jobs);
+    this.figures = new Figures(api, modelId, this.files);
+    this.reports = new Reports(api, modelId, this.files);
     this.face = new FacePick(api, {
       view: this.view,
       model: () => this.model,

@@ -1742,6 +1742,8 @@ export const texts = {
     save: "Datei speichern",
   },
 
+  condition_report: { title: "Zustandsbericht", open: "Zustandsbericht …" },
+
   tours: {
     title: "Führungen",
     new: "Neue Führung …",

@@ -1697,6 +1697,8 @@ export const texts = {
     save: "Save file",
   },
 
+  condition_report: { title: "Condition report", open: "Condition report…" },
+
   tours: {
     title: "Tours",
     new: "New tour…",

@@ -1733,6 +1733,11 @@ export const texts = {
     save: "Guardar archivo",
   },
 
+  condition_report: {
+    title: "Informe de estado de conservación",
+    open: "Informe de estado de conservación…",
+  },
+
   tours: {
     title: "Recorridos",
     new: "Nuevo recorrido…",

@@ -521,3 +521,30 @@ export const filesStyles = css`
     accent-color: var(--accent);
   }
 `;
+
+/** A radio group with the name and a hint of each choice. */
+export const formatChoiceStyles = css`
+  .formats {
+    display: grid;
+    grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
+    gap: var(--space-2);
+  }
+  .formats button {
+    display: grid;
+    grid-template-columns: minmax(0, 1fr);
+    justify-items: start;
+    align-content: start;
+    gap: var(--space-half);
+    padding: var(--space-2) var(--space-3);
+    text-align: start;
+    white-space: normal;
+  }
+  .formats button[aria-checked="true"] {
+    border-color: var(--accent);
+    box-shadow: inset 0 0 0 1px var(--accent);
+    background: var(--accent-soft);
+  }
+  .formats button[aria-checked="true"] .hint {
+    color: var(--ink);
+  }
+`;

@@ -713,6 +713,22 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       end: close_dialog,
     },
     {
+      name: "condition report",
+      start: async () => {
+        await open_tab(page, w, w.view.title);
+        await open(button(w.condition_report.open));
+        await button(w.report_dialog.add_field).click();
+        const label = `${w.report_dialog.value} (${w.report_dialog.field(1)})`;
+        await page.getByRole("textbox", exact(label)).fill("Museum");
+        for (const part of ["figures", "findings"])
+          await page.locator(`strata-report-sections li[data-part=${part}] summary`).click();
+        await button(w.report_dialog.make).click();
+        await page.getByText(w.report_dialog.wrong_label).waitFor();
+      },
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
       name: "new tour",
       start: async () => {
         await open_tab(page, w, w.view.title);

@@ -22,7 +22,7 @@ import {
 } from "../../math/section";
 import { looksOfView, type LookSettings } from "../../domain/views";
 import { notices } from "../../ui/notices";
-import { reorder } from "../../ui/reorder";
+import { reorder } from "../../ui/order/reorder";
 import { texts } from "../../texts";
 
 export const kMostLooksShown = 4;

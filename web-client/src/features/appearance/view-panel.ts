@@ -8,7 +8,7 @@ import { icon } from "../../ui/icons";
 import "./look-list";
 import { withKey } from "../../ui/keys/command-keys";
 import { texts } from "../../texts";
-import type { RolloutDialogRequest, TourRequest, ViewRequest } from "../../session/requests";
+import type { ModelDialogRequest, TourRequest, ViewRequest } from "../../session/requests";
 
 @customElement("strata-view-panel")
 export class StrataViewPanel extends SidePanel {
@@ -83,14 +83,16 @@ export class StrataViewPanel extends SidePanel {
       this.dispatchEvent(
         new CustomEvent<ViewRequest>("request", { detail: { dialog: "figure", view: null } }),
       );
-    const unroll = (): boolean =>
-      this.dispatchEvent(
-        new CustomEvent<RolloutDialogRequest>("request", { detail: { dialog: "rollout" } }),
-      );
+    const show = (dialog: ModelDialogRequest["dialog"]): boolean =>
+      this.dispatchEvent(new CustomEvent<ModelDialogRequest>("request", { detail: { dialog } }));
     return html`<div class="part">
       <h3>${texts.figures.title}</h3>
       <div><button title=${withKey(texts.figures.open, "figure")} @click=${open}>${icon("measure")}${texts.figures.open}</button></div>
-      <div><button @click=${unroll}>${icon("measure")}${texts.figures.unroll}</button></div>
+      <div><button @click=${() => show("rollout")}>${icon("measure")}${texts.figures.unroll}</button></div>
+    </div>
+    <div class="part">
+      <h3>${texts.condition_report.title}</h3>
+      <div><button @click=${() => show("report")}>${icon("document")}${texts.condition_report.open}</button></div>
     </div>`;
   }
 }

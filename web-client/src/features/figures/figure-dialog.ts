@@ -1,9 +1,8 @@
 // <strata-figure-dialog>: sets the options of a measured figure, previews the sheet, and starts the
 // job that makes the file. The figure shows this user's view or, with `view`, a saved view.
 
-import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError } from "../../net/api-error";
 import type { CameraMessage } from "../../math/camera";
 import {
   figureChoices,
@@ -29,11 +28,11 @@ import "../../ui/dialog";
 import "./face-hint";
 import "./figure-preview";
 import { figureStyles } from "./figure-styles";
+import { AwaitedFile, awaitedFileStyles } from "../../session/awaited-file";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import { Kept } from "../../core/kept";
 import { hasKeyboard } from "../../ui/keyboard";
-import { isBusy, type LayerJob } from "../../session/layer-jobs";
 import type { ModelSession } from "../../session/model-session";
 import { fieldProblem, typingProblem, type FieldProblem } from "./figure-problems";
 import { wordFields } from "./figure-words";
@@ -42,8 +41,7 @@ import { kNewRollout, rolloutOf, wrongSurface, type RolloutInput } from "./rollo
 import { labelFields, labelsOf, type LabelChoice } from "./figure-labels";
 import { numberInput } from "../../ui/number-input";
 import { radioGroup } from "../../ui/radio-group";
-import { styled } from "../../ui/styled";
-import { sharedStyles } from "../../ui/styles";
+import { formatChoiceStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 
 const words = texts.figures;
@@ -63,9 +61,12 @@ export class StrataFigureDialog extends LitElement {
   @state() private _dpiTyped: string | null = null;
   @state() private _problem: FieldProblem | null = null;
   @state() private _asking = false; // whether the user is picking a face while the dialog is hidden
-  @state() private _sending = false;
   @state() private _rollout: RolloutInput = kNewRollout; // the last valid input
   private readonly _kept = new Kept<unknown>(() => localStorage, "strata.figure", null);
+  private readonly _file = new AwaitedFile(this, (problem) => {
+    this.refuse(problem);
+    void this.goToProblem();
+  });
   private _camera: CameraMessage | null = null; // this user's camera
   private _opener: HTMLElement | null = null;
 
@@ -74,7 +75,13 @@ export class StrataFigureDialog extends LitElement {
     followSession(this, "jobs", "layers", "tables", "views", "view", "appearance", "tools");
   }
 
-  static override styles = [sharedStyles, figureStyles, rolloutStyles];
+  static override styles = [
+    sharedStyles,
+    formatChoiceStyles,
+    awaitedFileStyles,
+    figureStyles,
+    rolloutStyles,
+  ];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -95,18 +102,7 @@ export class StrataFigureDialog extends LitElement {
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.session.figures.awaited = null; // after the dialog has closed, a notice offers the file
     this.session.face.giveUp();
-  }
-
-  override willUpdate(_: PropertyValues): void {
-    const { awaited: key } = this.session.figures;
-    const problem = this.job?.problem;
-    if (key === null || !problem) return;
-    this.session.figures.awaited = null;
-    this.session.jobs.dismiss(key);
-    this.refuse(problem);
-    void this.goToProblem();
   }
 
   /**
@@ -115,11 +111,6 @@ export class StrataFigureDialog extends LitElement {
    */
   private seeCamera(): void {
     this._camera = this.session.views.content().camera;
-  }
-
-  private get job(): LayerJob | null {
-    const { figures, jobs } = this.session;
-    return jobs.entries.find(({ key }) => key === figures.awaited) ?? null;
   }
 
   private get requestNow(): FigureRequest | null {
@@ -146,7 +137,7 @@ export class StrataFigureDialog extends LitElement {
   override render(): TemplateResult {
     const { session, view } = this;
     if (this._asking) return html`<strata-face-hint .session=${session}></strata-face-hint>`;
-    return html`<strata-dialog vast heading=${view ? words.title_of_view(view.name) : words.title} way_out=${this.job && isBusy(this.job) ? "" : texts.close} @closed=${this.onClosed}>
+    return html`<strata-dialog vast heading=${view ? words.title_of_view(view.name) : words.title} way_out=${this._file.running ? "" : texts.close} @closed=${this.onClosed}>
       <div class="editor">
         <form id="figure" class="fields" novalidate @submit=${this.onSubmit}>
           ${this.direction()} ${this.scale()} ${this.sheet()} ${this.resolution()} ${this.format()} ${this.written()}
@@ -338,25 +329,14 @@ export class StrataFigureDialog extends LitElement {
   }
 
   private actions(): TemplateResult {
-    const { job } = this;
-    const { saved } = this.session.figures;
-    const busy = job !== null && isBusy(job);
-    const percent = Math.round((job?.job.progress ?? 0) * 100);
-    const general = this._problem?.field === "" ? this._problem.text : "";
-    return html`${
-      busy
-        ? html`<div slot="told" class="making">
-          <div class="bar" role="progressbar" aria-label=${words.making} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
-            <i ${styled({ width: `${percent}%` })}></i>
-          </div>
-          <span class="hint">${job.job.state === "queued" ? texts.layer_jobs.queued : job.job.message || words.making}</span>
-        </div>`
-        : html`<div slot="told" class="told ${general || saved ? "" : "nothing"}">
-          ${general ? html`<span class="error" role="alert">${general}</span>` : html`<span class="hint" role="status">${saved ? words.saved(saved) : ""}</span>`}
-        </div>`
-    }
-    ${busy ? html`<button slot="actions" @click=${() => void this.cancel(job)}>${words.cancel}</button>` : nothing}
-    <button slot="actions" class="primary" form="figure" ?disabled=${busy || this._sending}>${words.make}</button>`;
+    return this._file.footer({
+      form: "figure",
+      make: words.make,
+      making: words.making,
+      cancel: words.cancel,
+      saved: words.saved,
+      problem: this._problem?.field === "" ? this._problem.text : "",
+    });
   }
 
   /** Returns a description of the preview for screen readers. */
@@ -481,7 +461,7 @@ export class StrataFigureDialog extends LitElement {
   private readonly onSubmit = (event: Event): void => {
     event.preventDefault();
     const request = this.requestNow;
-    if (this._sending || (this.job && isBusy(this.job))) return;
+    if (!this._file.isFree) return;
     const problem = request ? this.typingProblem : { field: "from", text: words.no_face };
     const { rollout } = this.session.figures.draft;
     const isWrong = this._choices.from === "rollout" && rollout && wrongSurface(rollout) !== null;
@@ -501,27 +481,11 @@ export class StrataFigureDialog extends LitElement {
 
   private async make(request: FigureRequest): Promise<void> {
     const { figures, model } = this.session;
-    this._sending = true;
     this._problem = null;
-    try {
-      await figures.make(words.job(request.title ?? model?.name ?? ""), request);
-      if (!this.isConnected) figures.awaited = null;
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      this.refuse(error.problem);
-      void this.goToProblem();
-    } finally {
-      this._sending = false;
-    }
-  }
-
-  private async cancel({ key }: LayerJob): Promise<void> {
-    try {
-      await this.session.jobs.cancel(key);
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      this.refuse(error.problem);
-    }
+    await this._file.make(
+      () => figures.make(words.job(request.title ?? model?.name ?? ""), request),
+      () => this.isConnected,
+    );
   }
 
   private readonly onClosed = (): void => {

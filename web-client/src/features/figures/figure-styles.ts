@@ -47,29 +47,6 @@ export const figureStyles = css`
   textarea {
     min-height: 3.625rem;
   }
-  .formats {
-    display: grid;
-    grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
-    gap: var(--space-2);
-  }
-  .formats button {
-    display: grid;
-    grid-template-columns: minmax(0, 1fr);
-    justify-items: start;
-    align-content: start;
-    gap: var(--space-half);
-    padding: var(--space-2) var(--space-3);
-    text-align: start;
-    white-space: normal;
-  }
-  .formats button[aria-checked="true"] {
-    border-color: var(--accent);
-    box-shadow: inset 0 0 0 1px var(--accent);
-    background: var(--accent-soft);
-  }
-  .formats button[aria-checked="true"] .hint {
-    color: var(--ink);
-  }
   .sheet {
     position: sticky; /* stays visible next to the fields, which are longer */
     top: 0;
@@ -86,29 +63,6 @@ export const figureStyles = css`
     background: var(--warn-soft);
     color: var(--ink);
     font-size: var(--text-small);
-  }
-  .making,
-  .told {
-    flex: 1 1 15rem;
-    align-self: center;
-    display: grid;
-    gap: var(--space-1);
-    min-width: 0;
-    overflow-wrap: anywhere;
-  }
-  .told.nothing {
-    flex-basis: 0; /* keeps the buttons in a single row */
-  }
-  .bar {
-    height: 0.375rem;
-    border-radius: var(--radius-tiny);
-    overflow: hidden;
-    background: var(--line);
-  }
-  .bar i {
-    display: block;
-    height: 100%;
-    background: var(--accent);
   }
   @media (max-width: 760px) {
     .editor {

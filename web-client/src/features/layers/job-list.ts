@@ -113,7 +113,7 @@ function jobRow(session: ModelSession, entry: LayerJob): TemplateResult {
       ${
         busy
           ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void cancel(session, entry)}>${texts.cancel}</button>`
-          : html`${job.file && !problem ? html`<button @click=${() => void session.figures.save(entry.key)}>${icon("import")}${texts.figures.save}</button>` : nothing}<button
+          : html`${job.file && !problem ? html`<button @click=${() => void session.files.save(entry.key)}>${icon("import")}${texts.figures.save}</button>` : nothing}<button
             class="icon quiet"
             aria-label=${words.dismiss(entry.name)}
             @click=${() => session.jobs.dismiss(entry.key)}

@@ -10,7 +10,7 @@ import { valueRange, type Layer, type LayerPatch } from "../../core/types";
 import { askToTrash, tellTrashed } from "../../ui/trash";
 import { openTrashOf } from "../../ui/trash-dialog";
 import { ask } from "../../ui/dialog";
-import { DragOrder } from "../../ui/drag-order";
+import { DragOrder } from "../../ui/order/drag-order";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import { unlockLabel } from "../../session/layer-lock";

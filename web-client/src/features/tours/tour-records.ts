@@ -13,7 +13,7 @@ import { addFrom, addFromStyles } from "../../ui/add-from";
 import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import "../../ui/ordered-choice";
+import "../../ui/order/ordered-choice";
 import "../../session/fields/record-chooser";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";

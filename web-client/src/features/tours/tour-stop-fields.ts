@@ -21,7 +21,7 @@ import { icon } from "../../ui/icons";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { numberInput } from "../../ui/number-input";
-import "../../ui/ordered-choice";
+import "../../ui/order/ordered-choice";
 import { radioGroup } from "../../ui/radio-group";
 import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";

@@ -8,7 +8,7 @@ import { languageInWords } from "../../core/languages";
 import { formatList } from "../../core/locale";
 import { kMostStops, moved, newStop, untranslated, type StopDraft } from "../../domain/tours";
 import type { View } from "../../core/protocol.gen";
-import { DragOrder } from "../../ui/drag-order";
+import { DragOrder } from "../../ui/order/drag-order";
 import { followSession } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";

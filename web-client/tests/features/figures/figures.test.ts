@@ -3,6 +3,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { FacePick } from "../../../src/features/figures/face-pick";
 import { Figures } from "../../../src/features/figures/figures";
+import { FileJobs } from "../../../src/session/file-jobs";
 import { isBusy, LayerJobs } from "../../../src/session/layer-jobs";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { texts } from "../../../src/texts";
@@ -315,11 +316,13 @@ afterEach(() => {
 
 describe("a figure", () => {
   let jobs: LayerJobs;
+  let files: FileJobs;
   let figures: Figures;
   let state: object;
   beforeEach(() => {
     jobs = new LayerJobs(api, "9", () => {});
-    figures = new Figures(api, jobs);
+    files = new FileJobs(api, jobs);
+    figures = new Figures(api, "9", files);
     state = job("running");
     answers.set(kFigures, () => json(job("queued"), 202));
     answers.set("GET /api/v1/jobs/5", () => json(state));
@@ -350,7 +353,7 @@ describe("a figure", () => {
       { key, name: "Figure: Pot", job: { state: "running", progress: 0.5 } },
     ]);
     await end(job("done", { file }));
-    expect([saved, figures.saved, jobs.entries, told]).toEqual([
+    expect([saved, files.saved, jobs.entries, told]).toEqual([
       ["pot-front.pdf"],
       "pot-front.pdf",
       [],
@@ -360,7 +363,7 @@ describe("a figure", () => {
 
   it("is offered where nobody waits any more, and stays listed until it is saved", async () => {
     await make();
-    figures.awaited = null;
+    files.awaited = null;
     await end(job("done", { file }));
     expect([saved, jobs.entries.length, isBusy(jobs.entries[0]!)]).toEqual([[], 1, false]);
     expect(told.map(({ title, detail }) => [title, detail])).toEqual([

@@ -4,11 +4,12 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { moved } from "../domain/tours";
-import { addFrom, addFromStyles } from "./add-from";
-import { icon, type IconName } from "./icons";
-import { sharedStyles } from "./styles";
-import { texts } from "../texts";
+import { moved } from "../../domain/tours";
+import { addFrom, addFromStyles } from "../add-from";
+import { icon } from "../icons";
+import { OrderButtons } from "./order-buttons";
+import { sharedStyles } from "../styles";
+import { texts } from "../../texts";
 
 export interface OrderedThing {
   value: string;
@@ -30,6 +31,7 @@ export class StrataOrderedChoice extends LitElement {
   @property({ attribute: false }) wrong: readonly string[] = [];
   /** Returns the content below the name of a chosen item. */
   @property({ attribute: false }) more: ((value: string) => unknown) | null = null;
+  private readonly _order = new OrderButtons(this);
 
   static override styles = [
     sharedStyles,
@@ -125,23 +127,17 @@ export class StrataOrderedChoice extends LitElement {
     const thing = this.things.find((each) => each.value === value);
     const name = thing?.name ?? words.gone(value);
     const more = this.more?.(value);
-    const button = (
-      glyph: IconName,
-      label: string,
-      disabled: boolean,
-      act: () => void,
-    ): TemplateResult =>
-      html`<button type="button" class="icon quiet" aria-label=${label} title=${label} ?disabled=${disabled} @click=${act}>${icon(glyph)}</button>`;
     return html`<li class=${this.wrong.includes(value) ? "wrong" : ""}>
       <span class="name">${name}${thing?.badge ?? nothing}</span>
       <span class="buttons">
         ${
           chosen.length > 1
-            ? html`${button("up", words.up(name), index === 0, () => this.put(moved(chosen, index, index - 1)))}
-            ${button("down", words.down(name), index === chosen.length - 1, () => this.put(moved(chosen, index, index + 1)))}`
+            ? this._order.buttons({ id: value, name, index, count: chosen.length }, (to) =>
+                this.put(moved(chosen, index, to)),
+              )
             : nothing
         }
-        ${button("close", words.remove(name), false, () => this.put(chosen.filter((each) => each !== value)))}
+        <button type="button" class="icon quiet" aria-label=${words.remove(name)} title=${words.remove(name)} @click=${() => this.put(chosen.filter((each) => each !== value))}>${icon("close")}</button>
       </span>
       ${more ? html`<div class="more">${more}</div>` : nothing}
     </li>`;

@@ -1,0 +1,144 @@
+// The job of a dialog that makes a file, and the dialog's footer with its progress and result.
+
+import { css, html, type ReactiveController, type ReactiveControllerHost } from "lit";
+import type { TemplateResult } from "lit";
+import { ApiError } from "../net/api-error";
+import type { ProblemBody } from "../core/types";
+import { styled } from "../ui/styled";
+import { texts } from "../texts";
+import { isBusy, type LayerJob } from "./layer-jobs";
+import type { ModelSession } from "./model-session";
+
+/** The texts of the footer. `form` is the id of the form that the button submits. */
+export interface FileFooter {
+  form: string;
+  make: string;
+  making: string;
+  cancel: string;
+  saved(file: string): string;
+  /** A problem that belongs to no field, or an empty text. */
+  problem: string;
+}
+
+export class AwaitedFile implements ReactiveController {
+  private _sending = false;
+
+  /** `refuse` shows the problem of a refused request or a failed job. */
+  constructor(
+    private readonly _host: ReactiveControllerHost & { session: ModelSession },
+    private readonly _refuse: (problem: ProblemBody) => void,
+  ) {
+    _host.addController(this);
+  }
+
+  private get job(): LayerJob | null {
+    const { files, jobs } = this._host.session;
+    return jobs.entries.find(({ key }) => key === files.awaited) ?? null;
+  }
+
+  /** The job while it is queued or running. */
+  get running(): LayerJob | null {
+    const { job } = this;
+    return job && isBusy(job) ? job : null;
+  }
+
+  /** Whether the dialog can start another job. */
+  get isFree(): boolean {
+    return !this._sending && !this.running;
+  }
+
+  hostConnected(): void {
+    this._host.session.files.saved = "";
+  }
+
+  hostDisconnected(): void {
+    this._host.session.files.awaited = null; // after the dialog has closed, a notice offers the file
+  }
+
+  hostUpdate(): void {
+    const { files, jobs } = this._host.session;
+    const { job } = this;
+    if (!job?.problem) return;
+    files.awaited = null;
+    jobs.dismiss(job.key);
+    this._refuse(job.problem);
+  }
+
+  /** Runs a function that starts the job. `isOpen` returns whether the dialog is still open. */
+  async make(start: () => Promise<unknown>, isOpen: () => boolean): Promise<void> {
+    this._sending = true;
+    this._host.requestUpdate();
+    try {
+      await start();
+      if (!isOpen()) this._host.session.files.awaited = null;
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this._refuse(error.problem);
+    } finally {
+      this._sending = false;
+      this._host.requestUpdate();
+    }
+  }
+
+  private async cancel({ key }: LayerJob): Promise<void> {
+    try {
+      await this._host.session.jobs.cancel(key);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this._refuse(error.problem);
+    }
+  }
+
+  /** Renders the content of a dialog's footer. */
+  footer({ form, make, making, cancel, saved, problem }: FileFooter): TemplateResult {
+    const { running, isFree } = this;
+    const { saved: file } = this._host.session.files;
+    if (!running)
+      return html`<div slot="told" class="told ${problem || file ? "" : "nothing"}">
+          ${problem ? html`<span class="error" role="alert">${problem}</span>` : html`<span class="hint" role="status">${file ? saved(file) : ""}</span>`}
+        </div>
+        <button slot="actions" class="primary" form=${form} ?disabled=${!isFree}>${make}</button>`;
+    const { job } = running;
+    const percent = Math.round(job.progress * 100);
+    return html`<div slot="told" class="making">
+        <div class="bar" role="progressbar" aria-label=${making} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
+          <i ${styled({ width: `${percent}%` })}></i>
+        </div>
+        <span class="hint">${job.state === "queued" ? texts.layer_jobs.queued : job.message || making}</span>
+      </div>
+      <button slot="actions" @click=${() => void this.cancel(running)}>${cancel}</button>
+      <button slot="actions" class="primary" form=${form} disabled>${make}</button>`;
+  }
+}
+
+export const awaitedFileStyles = css`
+  .making,
+  .told {
+    flex: 1 1 15rem;
+    align-self: center;
+    display: grid;
+    gap: var(--space-1);
+    min-width: 0;
+    overflow-wrap: anywhere;
+  }
+  .told.nothing {
+    flex-basis: 0; /* keeps the buttons in a single row */
+  }
+  .bar {
+    height: 0.375rem;
+    border-radius: var(--radius-tiny);
+    overflow: hidden;
+    background: var(--line);
+  }
+  .bar i {
+    display: block;
+    height: 100%;
+    background: var(--accent);
+  }
+  @media (max-width: 560px) {
+    .making,
+    .told:not(.nothing) {
+      flex-basis: 100%; /* above the buttons, which stay in a single row */
+    }
+  }
+`;
