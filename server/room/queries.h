@@ -119,7 +119,8 @@ class Queries {
   virtual Result<query::SurfaceTexels> surface_texels(const std::string& layer,
                                                       const Selection& selection = {}) = 0;
   // Returns the area of each key. The layer must be a layer of records.
-  virtual Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) = 0;
+  virtual Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer,
+                                                                   At at = {}) = 0;
   // Counts the changes that a restore of one state of a layer would make to another state. With
   // `outline`, counts only the changes inside it.
   virtual Result<LayerDifference> difference(const std::string& layer, At one, At other,

@@ -141,9 +141,10 @@ class FilteredQueries final : public Queries {
     const Selection seen = STRATA_TRY(seen_by(selection));
     return queries_.surface_texels(layer, seen);
   }
-  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) override {
+  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer,
+                                                           At at) override {
     STRATA_TRY(layers_.check({layer}));
-    return queries_.key_areas(layer);
+    return queries_.key_areas(layer, at);
   }
   Result<LayerDifference> difference(const std::string& layer, At one, At other,
                                      const std::optional<Outline>& outline) override {

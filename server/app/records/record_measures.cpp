@@ -31,7 +31,7 @@ Result<RecordMeasures> RecordMeasures::of_place(const Services& services, const 
     if (column.kind == ColumnKind::line) measures.lines_.push_back(column);
     if (column.kind == ColumnKind::point) measures.points_.push_back(column);
   }
-  if (!measures.lines_.empty()) measures.names_.emplace_back("length_m");
+  if (!measures.lines_.empty()) measures.names_.emplace_back(kLengthMeasure);
   if (!measures.points_.empty()) measures.names_.emplace_back("point_count");
   if (measures.lines_.empty() && measures.points_.empty()) return measures;
   if (place.model) {

@@ -11,7 +11,7 @@
 
 namespace strata::app {
 
-inline constexpr const char* kAreaMeasure = "area_m2";
+inline constexpr const char *kAreaMeasure = "area_m2", *kLengthMeasure = "length_m";
 
 // The measures of a record on the surface. For a layer, `area_m2` is the area of the record's
 // texels. If the table has columns with lines or points, `length_m` is the length of the lines and

@@ -5,6 +5,7 @@
 
 #include "app/reports/report_parts.h"
 #include "core/uuid.h"
+#include "domain/people/question.h"
 #include "domain/scene/model.h"
 #include "report/writers.h"
 #include "room/room.h"
@@ -90,6 +91,8 @@ Result<report::Document> document_of(const ReportContext& context, Progress& pro
   double whole = 0, done = 0;
   for (const auto& section : request.sections) whole += weight_of(section.part);
   for (const auto& section : request.sections) {
+    check_question();
+    if (progress.cancelled()) return cancelled_problem();
     const double weight = weight_of(section.part);
     progress.begin_stage(share * done / whole, share * (done + weight) / whole);
     done += weight;
@@ -112,8 +115,11 @@ Result<std::shared_ptr<const TemporaryFile>> make_report(const Services& service
                                                          const std::filesystem::path& folder,
                                                          Progress& progress) {
   constexpr double kContent = 0.9;  // the rest of the progress is for the file
+  // Holds the memory during the whole report, because a report must not fail at its last drawing.
+  const auto held = STRATA_TRY(budget.take(drawing_bytes()));
+  ByteBudget own(drawing_bytes());
   std::vector<std::shared_ptr<const TemporaryFile>> files;
-  const ReportContext context{services, budget, request, words_in(request.language), folder, files};
+  const ReportContext context{services, own, request, words_in(request.language), folder, files};
   const report::Document document = STRATA_TRY(document_of(context, progress, kContent));
   progress.begin_stage(kContent, 1);
   progress.report(0, "Writing the report");
@@ -128,8 +134,8 @@ Result<std::shared_ptr<const TemporaryFile>> make_report(const Services& service
                          : report::write_pdf(document, file->path, progress);
   if (!written) {
     Error problem = std::move(written.error());
-    // All other values are made by the server.
-    if (problem.field.starts_with("logo")) problem.field = "logo";
+    // The fields of all other parts of the document are not in the user's request.
+    problem.field = problem.field.starts_with("logo") ? "logo" : "";
     return tl::unexpected(std::move(problem));
   }
   file->bytes = std::filesystem::file_size(file->path);

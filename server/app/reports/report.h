@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -50,14 +51,15 @@ struct ReportRequest {
   std::vector<Section> sections{};
   std::vector<Layer> layers{};   // from bottom to top
   room::PictureRequest shown{};  // contains the sequence that the whole report shows
+  std::map<TableId, std::int64_t> records_at{};  // the sequences of the layers' tables
   std::vector<MeasuredFigure> figures{};
   std::size_t max_records = 100;  // of each layer
   bool record_pictures = true;    // draw the place of each record
 };
 
 // Writes a condition report to a file in `folder`. `budget` is that of figures. Returns the errors
-// of make_figure and of report/writers.h, with the field `logo` for a logo that cannot be read.
-// Blocks.
+// of make_figure and of report/writers.h. The field is `logo` for a logo that cannot be read, and
+// "figures[i]" for a figure that cannot be drawn. Blocks.
 Result<std::shared_ptr<const TemporaryFile>> make_report(const Services& services,
                                                          ByteBudget& budget,
                                                          const ReportRequest& request,

@@ -5,8 +5,9 @@
 #include "app/figures/class_names.h"
 #include "app/figures/figures.h"
 #include "app/reports/report_parts.h"
+#include "domain/people/question.h"
 #include "domain/scene/model.h"
-#include "query/statistics/key_areas.h"
+#include "figure/paper.h"
 #include "report/page.h"
 #include "room/queries.h"
 #include "room/room.h"
@@ -43,16 +44,21 @@ room::LayerView& view_of(FigureRequest& figure, LayerId layer) {
   return figure.shown.shown.layers.emplace_back(std::move(view));
 }
 
-// Returns the names of the records that are painted on a layer. Returns no names for more keys than
-// a legend can show.
-Result<RecordNames> painted_names(const ReportContext& context, const Layer& layer) {
+// Returns the labels of the records on a layer. Returns no labels for more records than a legend
+// can show.
+Result<RecordNames> labels_of(const ReportContext& context, const Layer& layer) {
   constexpr std::size_t kMaxKeys = 40;
-  const auto areas = STRATA_TRY(context.request.room->queries().key_areas(layer.slug));
-  if (areas.size() > kMaxKeys) return RecordNames{};
+  const auto places = STRATA_TRY(record_places(context, layer));
+  if (places.size() > kMaxKeys) return RecordNames{};
   std::vector<std::int64_t> keys;
-  for (const auto& [key, area] : areas) keys.push_back(key);
-  return record_names(context.services.store, *layer.table, context.request.reader.role,
-                      std::move(keys), {}, context.words.tag);
+  for (const auto& [key, place] : places) keys.push_back(key);
+  const auto at = STRATA_TRY(records_at(context, layer));
+  const auto names =
+      STRATA_TRY(record_names(context.services.store, *layer.table, context.request.reader.role,
+                              keys, at, context.words.tag));
+  RecordNames labels;
+  for (const std::int64_t key : keys) labels[key] = record_label(context.words, names, key);
+  return labels;
 }
 
 // Gives the keys of records their names, so that the legend lists them. Leaves out layers with more
@@ -65,18 +71,18 @@ Result<void> name_keys(const ReportContext& context, std::map<LayerId, RecordNam
     if (!layer.table || !lists_values(palette)) continue;
     auto found = known.find(layer.id);
     if (found == known.end()) {
-      auto names = STRATA_TRY(painted_names(context, layer));
-      found = known.emplace(layer.id, std::move(names)).first;
+      auto labels = STRATA_TRY(labels_of(context, layer));
+      found = known.emplace(layer.id, std::move(labels)).first;
     }
     if (found->second.empty()) continue;
     std::vector<Palette::Point> points;
-    for (const auto& [key, name] : found->second) {
+    for (const auto& [key, label] : found->second) {
       const auto value = static_cast<double>(key);
       const Palette::Point* listed = point_of(palette, value);
       Palette::Point point = listed && listed->at == value ? *listed : Palette::Point{};
       point.at = value;
       point.color = color_of(palette, value);
-      point.label = name.empty() ? filled(context.words.record, std::to_string(key)) : name;
+      point.label = label;
       points.push_back(std::move(point));
     }
     palette.points = std::move(points);
@@ -85,13 +91,27 @@ Result<void> name_keys(const ReportContext& context, std::map<LayerId, RecordNam
   return {};
 }
 
+Result<std::shared_ptr<const TemporaryFile>> draw_figure(const ReportContext& context,
+                                                         const FigureRequest& figure,
+                                                         Progress& progress) {
+  check_question();
+  Progress drawing;  // its messages and fractions are not those of the report
+  const Progress::WhenCancelled stop(progress, [&drawing] { drawing.cancel(); });
+  return make_figure(context.services.store, context.budget, figure, context.folder, drawing);
+}
+
 }  // namespace
+
+std::uint64_t drawing_bytes() {
+  const glm::dvec2 pixels = glm::ceil(kTall_mm / figure::kInch_mm * double(kDpi));
+  return std::uint64_t{4} * static_cast<std::uint64_t>(pixels.x * pixels.y);
+}
 
 Result<Blocks> figures_part(const ReportContext& context, Progress& progress) {
   Blocks blocks;
   const auto& figures = context.request.figures;
   const Model model = context.request.room->model();
-  std::map<LayerId, RecordNames> names;  // of the layers of earlier figures
+  std::map<LayerId, RecordNames> labels;  // of the layers of earlier figures
   for (std::size_t i = 0; i < figures.size(); ++i) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(
@@ -101,13 +121,11 @@ Result<Blocks> figures_part(const ReportContext& context, Progress& progress) {
     const glm::dvec2 size = size_on(figure.plane, model);
     const glm::dvec2& sheet = size.y > kTallShape * size.x ? kTall_mm : kWide_mm;
     set_sheet(figure, sheet, kDpi);
-    STRATA_TRY(name_keys(context, names, figure));
-    Progress unwatched;
-    auto file =
-        make_figure(context.services.store, context.budget, figure, context.folder, unwatched);
+    STRATA_TRY(name_keys(context, labels, figure));
+    auto file = draw_figure(context, figure, progress);
     if (!file) {
       Error problem = std::move(file.error());
-      problem.field = "figures[" + std::to_string(i) + "]";
+      if (problem.code == ErrorCode::invalid) problem.field = "figures[" + std::to_string(i) + "]";
       return tl::unexpected(std::move(problem));
     }
     context.files.push_back(*file);
@@ -119,11 +137,11 @@ Result<Blocks> figures_part(const ReportContext& context, Progress& progress) {
 
 Result<std::shared_ptr<const TemporaryFile>> place_picture(const ReportContext& context,
                                                            const Layer& layer, std::int64_t key,
-                                                           const glm::dvec3& bounds_min,
-                                                           const glm::dvec3& bounds_max) {
+                                                           const query::KeyArea& place,
+                                                           Progress& progress) {
   const ReportRequest& request = context.request;
   const auto nearest =
-      STRATA_TRY(request.room->queries().position((bounds_min + bounds_max) / 2.0, {}));
+      STRATA_TRY(request.room->queries().position((place.bounds_min + place.bounds_max) / 2.0, {}));
   if (!nearest.hit) return nullptr;
   const Model model = request.room->model();
   FigureRequest figure;
@@ -138,13 +156,13 @@ Result<std::shared_ptr<const TemporaryFile>> place_picture(const ReportContext& 
   view_of(figure, layer.id).highlight =
       room::Highlight{std::vector{static_cast<std::uint32_t>(key)}, false};
   set_sheet(figure, {kPlaceWidth_mm, kPlaceHeight_mm}, kPlaceDpi);
-  const glm::dvec3 size = bounds_max - bounds_min, object = model.bounds_max - model.bounds_min;
+  const glm::dvec3 size = place.bounds_max - place.bounds_min,
+                   object = model.bounds_max - model.bounds_min;
   const double shown = std::max(kAround * std::max({size.x, size.y, size.z}),
                                 kLeastOfObject * std::max({object.x, object.y, object.z}));
   figure.scale =
       figure::fitting_scale(glm::dvec2(shown), {kPlaceHeight_mm, kPlaceHeight_mm}, model.metres());
-  Progress unwatched;
-  return make_figure(context.services.store, context.budget, figure, context.folder, unwatched);
+  return draw_figure(context, figure, progress);
 }
 
 }  // namespace strata::app

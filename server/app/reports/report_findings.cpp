@@ -20,29 +20,30 @@
 namespace strata::app {
 namespace {
 
+// Limits the time and the size of a report with many layers.
+constexpr std::size_t kMaxRecords = 2000;
 constexpr std::size_t kMaxPictures = 4;  // of each record
 constexpr std::uint64_t kMaxPictureBytes = 64u << 20;
 constexpr int kPictureSide = 1000;  // pixels
 
-// The records of a table that are painted on a layer.
-struct Painted {
+// The records of a layer.
+struct Findings {
   const Layer& layer;
   store::RecordPage page;
-  std::map<std::int64_t, query::KeyArea> areas;
+  std::map<std::int64_t, query::KeyArea> places;
   RecordNames names;
   WordsOfTables words;
-  std::vector<std::string> measures;  // their names
 };
 
-std::string cell_text(const ReportContext& context, const Painted& painted, const Record& record,
+std::string cell_text(const ReportContext& context, const Findings& findings, const Record& record,
                       const Column& column) {
   const auto value = record.values.find(column.id);
   if (value == record.values.end() || value->second.is_null()) return {};
   if (column.kind == ColumnKind::boolean)
     return value->second.get<bool>() ? context.words.yes : context.words.no;
   if (column.kind == ColumnKind::term && column.target) {
-    const auto known = painted.words.find(*column.target);
-    if (known != painted.words.end()) return known->second.name(value->second.get<std::int64_t>());
+    const auto known = findings.words.find(*column.target);
+    if (known != findings.words.end()) return known->second.name(value->second.get<std::int64_t>());
   }
   std::string text = print_value(column, value->second);
   // All digits of the value remain.
@@ -54,23 +55,22 @@ std::string cell_text(const ReportContext& context, const Painted& painted, cons
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const ReportContext& context,
-                                                          const Painted& painted,
+                                                          const Findings& findings,
                                                           const Record& record,
                                                           const RecordMeasures& measures) {
   std::vector<std::pair<std::string, std::string>> facts;
-  for (const Column& column : painted.page.table.columns) {
+  for (const Column& column : findings.page.table.columns) {
     if (holds_attachments(column.kind) || holds_features(column.kind)) continue;
-    std::string text = cell_text(context, painted, record, column);
+    std::string text = cell_text(context, findings, record, column);
     if (!text.empty())
       facts.emplace_back(label_or(column.labels, context.words.tag, column.name), std::move(text));
   }
+  const double area_m2 = findings.places.at(record.key).area_m2;
+  if (area_m2 > 0) facts.emplace_back(context.words.area, area_in(context.words, area_m2));
   const auto values = measures.of(record);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!(values[i] > 0)) continue;
-    const std::string& name = measures.names()[i];
-    if (name == kAreaMeasure)
-      facts.emplace_back(context.words.area, area_in(context.words, values[i]));
-    else if (name == "length_m")
+    if (measures.names()[i] == kLengthMeasure)
       facts.emplace_back(context.words.length, length_in(context.words, values[i]));
     else
       facts.emplace_back(context.words.points, number_in(context.words, values[i]));
@@ -93,12 +93,28 @@ Result<report::CellPicture> stored(const ReportContext& context,
   return report::CellPicture{file->path, kPlaceWidth_mm, name};
 }
 
-// Returns small versions of the pictures of a record. Leaves out files that cannot be read, because
+// Returns a small version of a picture, or nullopt if the file is too large or cannot be read.
+std::optional<std::vector<std::uint8_t>> small_version(store::Attachments& attachments,
+                                                       const Attachment& file) {
+  if (file.bytes > kMaxPictureBytes) return std::nullopt;
+  std::vector<std::uint8_t> bytes;
+  const auto read =
+      attachments.read(file.sha256, 0, file.bytes, [&](std::span<const std::uint8_t> part) {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+        return true;
+      });
+  if (!read) return std::nullopt;
+  auto small = make_thumbnail(bytes, kPictureSide);
+  if (!small) return std::nullopt;
+  return std::move(*small);
+}
+
+// Returns small versions of the pictures of a record. Names the files that cannot be shown, because
 // a report without one of them is better than no report.
-Result<std::vector<report::Cell>> pictures_of(const ReportContext& context, const Painted& painted,
-                                              const Record& record) {
+Result<std::vector<report::Cell>> pictures_of(const ReportContext& context,
+                                              const Findings& findings, const Record& record) {
   std::vector<AttachmentId> ids;
-  for (const Column& column : painted.page.table.columns) {
+  for (const Column& column : findings.page.table.columns) {
     const auto value = record.values.find(column.id);
     if (column.kind != ColumnKind::picture || value == record.values.end()) continue;
     for (const auto& id : value->second) ids.push_back(id.get<AttachmentId>());
@@ -107,41 +123,32 @@ Result<std::vector<report::Cell>> pictures_of(const ReportContext& context, cons
   if (ids.empty()) return cells;
   store::Attachments& attachments = context.services.store.attachments();
   const auto found =
-      STRATA_TRY(attachments.of_table(painted.page.table.id, context.request.reader, ids));
+      STRATA_TRY(attachments.of_table(findings.page.table.id, context.request.reader, ids));
   for (const AttachmentId id : ids) {
     const auto file = std::ranges::find(found, id, &Attachment::id);
     if (cells.size() == kMaxPictures) break;
-    if (file == found.end() || file->bytes > kMaxPictureBytes) continue;
-    std::vector<std::uint8_t> bytes;
-    STRATA_TRY(
-        attachments.read(file->sha256, 0, file->bytes, [&](std::span<const std::uint8_t> part) {
-          bytes.insert(bytes.end(), part.begin(), part.end());
-          return true;
-        }));
-    auto small = make_thumbnail(bytes, kPictureSide);
-    if (!small) continue;
-    report::Cell cell{file->name};
-    auto picture = STRATA_TRY(stored(context, *small, file->name));
-    cell.picture = std::move(picture);
-    cells.push_back(std::move(cell));
+    if (file == found.end()) continue;
+    report::Cell& cell = cells.emplace_back(report::Cell{file->name});
+    if (const auto small = small_version(attachments, *file)) {
+      auto picture = STRATA_TRY(stored(context, *small, file->name));
+      cell.picture = std::move(picture);
+    } else {
+      cell.text = filled(context.words.not_shown, file->name);
+    }
   }
   return cells;
 }
 
-Result<void> add_record(const ReportContext& context, const Painted& painted, const Record& record,
-                        const RecordMeasures& measures, Blocks& blocks) {
-  const auto name = painted.names.find(record.key);
-  blocks.emplace_back(
-      report::Heading{3, name == painted.names.end() || name->second.empty()
-                             ? filled(context.words.record, std::to_string(record.key))
-                             : name->second});
-  const auto facts = facts_of(context, painted, record, measures);
+Result<void> add_record(const ReportContext& context, const Findings& findings,
+                        const Record& record, const RecordMeasures& measures, Progress& progress,
+                        Blocks& blocks) {
+  blocks.emplace_back(report::Heading{3, record_label(context.words, findings.names, record.key)});
+  const auto facts = facts_of(context, findings, record, measures);
   if (!facts.empty()) blocks.emplace_back(facts_table(facts));
   std::vector<report::Cell> cells;
   if (context.request.record_pictures) {
-    const query::KeyArea& area = painted.areas.at(record.key);
-    auto picture = STRATA_TRY(
-        place_picture(context, painted.layer, record.key, area.bounds_min, area.bounds_max));
+    auto picture = STRATA_TRY(place_picture(context, findings.layer, record.key,
+                                            findings.places.at(record.key), progress));
     if (picture) {
       report::Cell cell{context.words.place};
       cell.picture = report::CellPicture{picture->path, kPlaceWidth_mm, context.words.place};
@@ -149,7 +156,7 @@ Result<void> add_record(const ReportContext& context, const Painted& painted, co
       context.files.push_back(std::move(picture));
     }
   }
-  auto pictures = STRATA_TRY(pictures_of(context, painted, record));
+  auto pictures = STRATA_TRY(pictures_of(context, findings, record));
   std::ranges::move(pictures, std::back_inserter(cells));
   if (cells.empty()) return {};
   report::Table table{{{"", 1}, {"", 1}}, {}};
@@ -162,54 +169,70 @@ Result<void> add_record(const ReportContext& context, const Painted& painted, co
   return {};
 }
 
-Result<void> add_layer(const ReportContext& context, const Layer& layer, Progress& progress,
-                       Blocks& blocks) {
+// A part of the progress of a section.
+struct Share {
+  double from, size;
+};
+
+// Adds at most `limit` records, and returns how many.
+Result<std::size_t> add_layer(const ReportContext& context, const Layer& layer, std::size_t limit,
+                              const Share& share, Progress& progress, Blocks& blocks) {
   const ReportRequest& request = context.request;
   store::Store& store = context.services.store;
-  Painted painted{layer, {}, {}, {}, {}, {}};
-  auto areas = STRATA_TRY(request.room->queries().key_areas(layer.slug));
-  painted.areas = std::move(areas);
-  std::vector<std::int64_t> keys;
-  for (const auto& [key, area] : painted.areas) keys.push_back(key);
-  if (keys.empty()) return {};
+  Findings findings{layer, {}, {}, {}, {}};
+  auto places = STRATA_TRY(record_places(context, layer));
+  findings.places = std::move(places);
   store::RecordQuery query;
-  query.keys = keys;
+  query.keys.emplace();
+  for (const auto& [key, place] : findings.places) query.keys->push_back(key);
+  if (query.keys->empty()) return 0;
+  auto at = STRATA_TRY(records_at(context, layer));
+  query.at = at;
   auto page = STRATA_TRY(store.records().page(*layer.table, request.reader.role, query));
-  painted.page = std::move(page);
-  auto names = STRATA_TRY(record_names(store, *layer.table, request.reader.role, std::move(keys),
-                                       {}, context.words.tag));
-  painted.names = std::move(names);
-  auto words = STRATA_TRY(
-      words_of(store, painted.page.table.columns, request.reader.role, context.words.tag));
-  painted.words = std::move(words);
-  const auto measures =
-      RecordMeasures::of_place(context.services, {painted.page.table, request.room->model(), layer},
-                               painted.page.table.columns);
+  findings.page = std::move(page);
+  auto names = STRATA_TRY(
+      record_names(store, *layer.table, request.reader.role, *query.keys, at, context.words.tag));
+  findings.names = std::move(names);
+  const auto& columns = findings.page.table.columns;
+  auto words = STRATA_TRY(words_of(store, columns, request.reader.role, context.words.tag));
+  findings.words = std::move(words);
+  const auto measures = RecordMeasures::of_place(
+      context.services, {findings.page.table, request.room->model(), {}}, columns);
   if (!measures) return tl::unexpected(measures.error());
-  const std::size_t total = painted.page.records.size(),
-                    shown = std::min(total, request.max_records);
-  if (shown == 0) return {};
+  const std::size_t total = findings.page.records.size(),
+                    shown = std::min({total, request.max_records, limit});
+  if (total == 0) return 0;
   blocks.emplace_back(report::Heading{2, layer_name(context, layer)});
   if (shown < total)
     blocks.emplace_back(report::Paragraph{
         {{filled(context.words.omitted, std::to_string(shown), std::to_string(total))}}});
   for (std::size_t i = 0; i < shown; ++i) {
     if (progress.cancelled()) return cancelled_problem();
-    progress.report(static_cast<double>(i) / static_cast<double>(shown),
+    progress.report(share.from + share.size * static_cast<double>(i) / static_cast<double>(shown),
                     "Describing record " + std::to_string(i + 1) + " of " + std::to_string(shown));
-    STRATA_TRY(add_record(context, painted, painted.page.records[i], *measures, blocks));
+    STRATA_TRY(
+        add_record(context, findings, findings.page.records[i], *measures, progress, blocks));
   }
-  return {};
+  return shown;
 }
 
 }  // namespace
 
 Result<Blocks> findings_part(const ReportContext& context, Progress& progress) {
   Blocks blocks;
+  if (context.request.max_records == 0) return blocks;
+  const auto has_records = [](const Layer& layer) { return layer.table.has_value(); };
+  const double size =
+      1.0 / static_cast<double>(std::ranges::count_if(context.request.layers, has_records));
+  std::size_t left = kMaxRecords;
+  Share share{0, size};
+  // The topmost layer first, as in legends.
   for (auto layer = context.request.layers.rbegin(); layer != context.request.layers.rend();
-       ++layer)
-    if (layer->table && context.request.max_records > 0)
-      STRATA_TRY(add_layer(context, *layer, progress, blocks));
+       ++layer) {
+    if (!has_records(*layer)) continue;
+    left -= STRATA_TRY(add_layer(context, *layer, left, share, progress, blocks));
+    share.from += size;
+  }
   return blocks;
 }
 

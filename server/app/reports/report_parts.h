@@ -1,9 +1,14 @@
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "app/reports/report.h"
+#include "query/statistics/key_areas.h"
 #include "report/document.h"
 
 // The sections of a condition report, as blocks without their headings and without the user's
@@ -13,7 +18,7 @@ namespace strata::app {
 // What the functions need. All members must outlive the call.
 struct ReportContext {
   const Services& services;
-  ByteBudget& budget;
+  ByteBudget& budget;  // for one drawing
   const ReportRequest& request;
   const ReportWords& words;
   const std::filesystem::path& folder;
@@ -32,13 +37,26 @@ Result<Blocks> findings_part(const ReportContext& context, Progress& progress);
 Blocks methods_part(const ReportContext& context);
 Blocks provenance_part(const ReportContext& context);
 
+// The memory of the largest drawing.
+std::uint64_t drawing_bytes();
 // Draws the surface around a record, `bounds` in world coordinates. Returns a PNG that is
 // kPlaceWidth_mm wide, or null if there is no surface near the record.
 inline constexpr double kPlaceWidth_mm = 78;
 Result<std::shared_ptr<const TemporaryFile>> place_picture(const ReportContext& context,
                                                            const Layer& layer, std::int64_t key,
-                                                           const glm::dvec3& bounds_min,
-                                                           const glm::dvec3& bounds_max);
+                                                           const query::KeyArea& place,
+                                                           Progress& progress);
+
+// Returns the sequence of the layer's table that the report shows, or nullopt for the current
+// state, which is faster to read.
+Result<std::optional<std::int64_t>> records_at(const ReportContext& context, const Layer& layer);
+// Returns the areas of the records that are painted on a layer or that have lines or points on its
+// model. The boxes include the lines and points.
+Result<std::map<std::int64_t, query::KeyArea>> record_places(const ReportContext& context,
+                                                             const Layer& layer);
+// Returns the name of a record, or its number if it has no name or does not exist.
+std::string record_label(const ReportWords& words, const std::map<std::int64_t, std::string>& names,
+                         std::int64_t key);
 
 // Returns a table without a first row.
 report::Table facts_table(const std::vector<std::pair<std::string, std::string>>& facts);

@@ -53,11 +53,16 @@ constexpr ReportWords kEnglish{
     .total = "Total",
     .largest_classes = "The {} largest of {} classes. The total includes all classes.",
     .nothing_painted = "Nothing is painted on this layer.",
+    .from_to = "from {} to {}",
+    .from = "from {}",
+    .below = "below {}",
+    .all_values = "all values",
     .record = "Record {}",
     .length = "Length",
     .points = "Points",
     .place = "Place on the surface",
     .omitted = "{} of {} records are shown.",
+    .not_shown = "{} (this picture cannot be shown)",
     .yes = "yes",
     .no = "no",
     .method_text =
@@ -125,11 +130,16 @@ constexpr ReportWords kGerman{
     .total = "Summe",
     .largest_classes = "Die {} größten von {} Klassen. Die Summe enthält alle Klassen.",
     .nothing_painted = "Auf dieser Ebene ist nichts gemalt.",
+    .from_to = "von {} bis {}",
+    .from = "ab {}",
+    .below = "unter {}",
+    .all_values = "alle Werte",
     .record = "Datensatz {}",
     .length = "Länge",
     .points = "Punkte",
     .place = "Ort auf der Oberfläche",
     .omitted = "{} von {} Datensätzen sind dargestellt.",
+    .not_shown = "{} (dieses Bild kann nicht gezeigt werden)",
     .yes = "ja",
     .no = "nein",
     .method_text =
@@ -198,11 +208,16 @@ constexpr ReportWords kSpanish{
     .total = "Total",
     .largest_classes = "Las {} clases mayores de {}. El total incluye todas las clases.",
     .nothing_painted = "No hay nada pintado en esta capa.",
+    .from_to = "de {} a {}",
+    .from = "desde {}",
+    .below = "menos de {}",
+    .all_values = "todos los valores",
     .record = "Registro {}",
     .length = "Longitud",
     .points = "Puntos",
     .place = "Lugar en la superficie",
     .omitted = "Se muestran {} de {} registros.",
+    .not_shown = "{} (esta imagen no se puede mostrar)",
     .yes = "sí",
     .no = "no",
     .method_text =
@@ -253,7 +268,7 @@ std::string number_in(const ReportWords& words, double value) {
   constexpr int kDigits = 4, kMostDecimals = 9;
   const int before = value == 0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
   const int decimals = std::clamp(kDigits - before, 0, kMostDecimals);
-  char text[64];
+  char text[512];  // the largest numbers have 309 digits
   std::snprintf(text, sizeof text, "%.*f", decimals, value);
   std::string number = text;
   if (number.find('.') != std::string::npos) {

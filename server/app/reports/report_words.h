@@ -21,9 +21,10 @@ struct ReportWords {
   // Directions of figures.
   const char *top, *bottom, *front, *back, *left, *right;
   // Quantities.
-  const char *class_name, *pieces, *area, *share, *total, *largest_classes, *nothing_painted;
+  const char *class_name, *pieces, *area, *share, *total, *largest_classes, *nothing_painted,
+      *from_to, *from, *below, *all_values;
   // Findings.
-  const char *record, *length, *points, *place, *omitted, *yes, *no;
+  const char *record, *length, *points, *place, *omitted, *not_shown, *yes, *no;
   // Methods.
   const char *method_text, *layer, *resolution, *texel, *origin, *painted, *computed, *from_shape,
       *analysis, *edited_by_hand;
@@ -37,7 +38,8 @@ const ReportWords& words_in(ReportLanguage language);
 std::string filled(const char* text, const std::string& part);
 std::string filled(const char* text, const std::string& first, const std::string& second);
 
-// Formats a number with at most four significant digits and without an exponent, in the language.
+// Formats a number without an exponent, in the language. Rounds it to four significant digits, but
+// not to less than a whole number.
 std::string number_in(const ReportWords& words, double value);
 // Formats an area in the unit of `readable_area`.
 std::string area_in(const ReportWords& words, double area_m2);

@@ -325,12 +325,14 @@ Result<query::SurfaceTexels> OpenRoom::QueriesPart::surface_texels(const std::st
 }
 
 Result<std::map<std::int64_t, query::KeyArea>> OpenRoom::QueriesPart::key_areas(
-    const std::string& layer) {
+    const std::string& layer, At at) {
   room_.touch();
   const auto found = STRATA_TRY(room_.state(layer));
+  auto tiles = STRATA_TRY(room_.tiles_at(found, at));
   const auto map = STRATA_TRY(room_.surface_map(found.layer.resolution));
-  return query::key_areas({found.layer, found.mirror->snapshot()}, *map, room_.geometry_->origin,
-                          room_.model().metres(), found.sums.get());
+  // The cache is for the current tiles.
+  return query::key_areas({found.layer, std::move(tiles)}, *map, room_.geometry_->origin,
+                          room_.model().metres(), at ? nullptr : found.sums.get());
 }
 
 }  // namespace strata::room

@@ -37,7 +37,8 @@ class OpenRoom::QueriesPart final : public Queries {
   Result<LayerAreas> layer_areas(const std::string& layer, At at) override;
   Result<query::SurfaceTexels> surface_texels(const std::string& layer,
                                               const Selection& selection) override;
-  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) override;
+  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer,
+                                                           At at) override;
   Result<LayerDifference> difference(const std::string& layer, At one, At other,
                                      const std::optional<Outline>& outline) override;
   Result<TileMirror::Snapshot> tiles(const std::string& layer, At at) override;

@@ -294,6 +294,62 @@ def test_a_report_contains_only_what_its_reader_sees(server):
         assert (["Price", "987"] in rows(body)) == sees, (role, rows(body))
 
 
+def test_lines_and_points_are_findings_and_quantities(server):
+    server.ok(
+        "POST",
+        "/projects/default/tables",
+        {
+            "name": "Cracks",
+            "columns": [
+                {"name": "Name", "required": True},
+                {"name": "Course", "kind": "line"},
+                {"name": "Samples", "kind": "point"},
+            ],
+        },
+    )
+    wish = {"name": "Cracks", "kind": "database", "type": "u16", "table": "cracks"}
+    server.ok("POST", M + "/layers", {**wish, "resolution": 2048})
+    model = server.ok("GET", M).json()["id"]
+    course = {"model": model, "coordinates": [[40, 0, 10], [40, 0, 25], [40, 0, 40]]}
+    sample = {"model": model, "coordinates": [[40, 0, 10]]}
+    values = {"name": "Long crack", "course": [course], "samples": [sample, sample]}
+    server.ok("POST", "/tables/cracks/records", {"values": values}, expect=(201,))
+    wish = {"layers": ["cracks"], "language": "de", "figures": []}
+    body = report(server, **wish).body
+    assert headings(body, 3) == ["Long crack"]
+    cells = rows(body)
+    assert ["Länge", "30 mm"] in cells and ["Punkte", "2"] in cells, cells
+    assert ["Long crack", "0", "0 mm²", "30 mm", "2", "0 %"] in cells, cells
+    assert len(pictures_mm(body)) == 1, "the place of the crack"
+
+
+def test_ranges_have_the_words_and_the_decimals_of_the_language(server):
+    palette = {
+        "mode": "step",
+        "points": [{"at": 0.5, "color": "#0000ff"}, {"at": 1.25, "color": "#ff0000"}],
+    }
+    wish = {"name": "Moisture", "type": "f32", "unit": "%", "resolution": 2048, "palette": palette}
+    server.ok("POST", M + "/layers", wish)
+    for value, where in ((0.75, "z > 40"), (2, "z > 60")):
+        fill(server, "moisture", value, where)
+    for language, named in (("de", "von 0,5 bis 1,25 %"), ("es", "de 0,5 a 1,25 %")):
+        wish = {"layers": ["moisture"], "language": language, "sections": [{"part": "quantities"}]}
+        cells = rows(report(server, **wish).body)
+        assert any(row[0] == named for row in cells), cells
+
+
+def test_a_picture_that_cannot_be_shown_is_named(server):
+    server.ok(
+        "POST",
+        "/tables/finds/records/2/attachments?name=broken.png",
+        png(64, 32, lambda x, y: (200, 10, 10))[:60],
+        headers={"Content-Type": "image/png"},
+    )
+    wish = {"sections": [{"part": "findings"}], "layers": ["finds"], **FAST}
+    cells = [cell for row in rows(report(server, **wish).body) for cell in row]
+    assert "broken.png (this picture cannot be shown)" in cells, cells
+
+
 def test_a_job_makes_the_report_and_can_be_cancelled(server):
     prefer = {"Prefer": "respond-async"}
     answer = server.request("POST", M + "/report", {"format": "pdf"}, headers=prefer)

@@ -158,7 +158,7 @@ class FakeQueries final : public room::Queries {
   Result<query::SurfaceTexels> surface_texels(const std::string&, const room::Selection&) override {
     return query::SurfaceTexels{};
   }
-  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string&) override {
+  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string&, room::At) override {
     return std::map<std::int64_t, query::KeyArea>();
   }
   Result<room::LayerDifference> difference(const std::string&, room::At, room::At,

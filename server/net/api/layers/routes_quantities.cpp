@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <set>
 
 #include "app/figures/class_names.h"
+#include "app/records/feature_measures.h"
 #include "app/records/painted_keys.h"
 #include "app/records/record_measures.h"
 #include "core/compensated_sum.h"
@@ -28,48 +28,8 @@
 namespace strata::net {
 namespace {
 
+using Features = app::FeatureMeasures;
 using Names = app::RecordNames;
-
-// Quantities of all records with lines or points. `names` are the names in RecordMeasures.
-struct OfFeatures {
-  std::vector<std::string> names;
-  std::map<std::int64_t, std::vector<double>> of_key;
-
-  std::vector<double> sum() const {
-    std::vector<CompensatedSum> sums(names.size());
-    for (const auto& [key, values] : of_key)
-      for (std::size_t i = 0; i < values.size(); ++i) sums[i] += values[i];
-    std::vector<double> all;
-    for (const CompensatedSum& sum : sums) all.push_back(sum.value());
-    return all;
-  }
-  std::vector<double> of(std::int64_t key) const {
-    const auto found = of_key.find(key);
-    return found == of_key.end() ? std::vector<double>(names.size(), 0.0) : found->second;
-  }
-};
-
-// If `model` is set, counts only the lines and points on this model.
-Result<OfFeatures> features_of(const RouteContext& context, const Table& table, Role seen_by,
-                               const std::optional<Model>& model, std::optional<std::int64_t> at) {
-  store::RecordQuery query;
-  query.limit = store::kMaxRecords;
-  query.at = at;
-  if (std::ranges::none_of(table.columns,
-                           [](const Column& column) { return holds_features(column.kind); }))
-    return OfFeatures{};
-  const auto page = STRATA_TRY(context.store.records().page(table.id, seen_by, query));
-  const auto measures =
-      app::RecordMeasures::of_place(context, {page.table, model, {}}, page.table.columns);
-  if (!measures) return tl::unexpected(measures.error());
-  OfFeatures features{measures->names(), {}};
-  for (const Record& record : page.records) {
-    auto values = measures->of(record);
-    if (std::ranges::any_of(values, [](double value) { return value > 0; }))
-      features.of_key[record.key] = std::move(values);
-  }
-  return features;
-}
 
 nlohmann::json sums_json(const query::Quantity& quantity) {
   return {{"pieces", quantity.pieces}, {"texels", quantity.texels}, {"area_m2", quantity.area_m2}};
@@ -80,7 +40,7 @@ double share_of(const query::Quantity& quantity, const query::Quantities& all) {
 }
 
 nlohmann::json quantities_json(const query::Quantities& all, const Layer& layer, const Names& names,
-                               const OfFeatures& features) {
+                               const Features& features) {
   nlohmann::json list = nlohmann::json::array();
   const auto add_share = [&](nlohmann::json json, const query::Quantity& quantity) {
     json["share"] = share_of(quantity, all);
@@ -112,7 +72,7 @@ nlohmann::json quantities_json(const query::Quantities& all, const Layer& layer,
 }
 
 app::Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names,
-                    const OfFeatures& features, const std::string& name) {
+                    const Features& features, const std::string& name) {
   app::Sheet sheet{name, {"class"}, {}};
   const bool has_keys = layer.kind == LayerKind::database,
              has_values = query::classes_of(layer).each;
@@ -151,19 +111,6 @@ app::Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Name
   return sheet;
 }
 
-// Adds the records that have lines or points but no painted texels.
-void add_classes(query::Quantities& all, const OfFeatures& features) {
-  std::set<double> painted;
-  for (const query::Quantity& quantity : all.classes) painted.insert(*quantity.value);
-  for (const auto& [key, values] : features.of_key) {
-    if (painted.contains(static_cast<double>(key))) continue;
-    query::Quantity& quantity = all.classes.emplace_back();
-    quantity.value = static_cast<double>(key);
-  }
-  std::ranges::stable_sort(all.classes, {},
-                           [](const query::Quantity& quantity) { return *quantity.value; });
-}
-
 Result<Response> quantity_sheet(const RouteContext& context, app::Sheet sheet, SheetFormat format,
                                 char separator) {
   app::add_readable_areas(sheet);
@@ -178,7 +125,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   auto all = target.room->queries().quantities(target.layer.slug, target.at);
   if (!all) return tl::unexpected(all.error());
   Names names;
-  OfFeatures features;
+  Features features;
   if (target.layer.table) {
     std::optional<std::int64_t> records_at;  // sequence of the table at the edit
     if (target.at) {
@@ -189,10 +136,11 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     }
     const auto table = context.store.tables().find(to_string(*target.layer.table), request.role());
     if (!table) return tl::unexpected(table.error());
-    auto marked = features_of(context, *table, request.role(), target.room->model(), records_at);
+    auto marked =
+        Features::of_table(context, *table, request.role(), target.room->model(), records_at);
     if (!marked) return tl::unexpected(marked.error());
     features = std::move(*marked);
-    add_classes(*all, features);
+    app::add_classes(*all, features);
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes)
       keys.push_back(static_cast<std::int64_t>(*quantity.value));
@@ -269,7 +217,7 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
       of_all.add(quantity);
     }
   const query::Quantity& sum = of_all.sum();
-  const auto features = STRATA_TRY(features_of(context, table, request.role(), {}, {}));
+  const auto features = STRATA_TRY(Features::of_table(context, table, request.role(), {}, {}));
   for (const auto& [key, values] : features.of_key) of_key.try_emplace(key);
   std::vector<std::int64_t> keys;
   for (const auto& [key, quantity] : of_key) keys.push_back(key);

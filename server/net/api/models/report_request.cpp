@@ -14,6 +14,7 @@
 #include "store/content/named_parts.h"
 #include "store/people/accounts.h"
 #include "store/store.h"
+#include "store/tables/tables.h"
 
 namespace strata::net {
 namespace {
@@ -137,8 +138,11 @@ Result<void> read_figures(const RouteContext& context, const Request& request,
       figures.emplace_back().direction = direction;
   for (std::size_t i = 0; i < figures.size(); ++i) {
     auto figure = read_figure(context, request, report, figures[i]);
-    if (!figure)
-      return at_field(figure.error(), "figures[" + std::to_string(i) + "]." + figure.error().field);
+    if (!figure) {
+      const std::string& part = figure.error().field;
+      return at_field(figure.error(),
+                      "figures[" + std::to_string(i) + "]" + (part.empty() ? "" : "." + part));
+    }
     report.figures.push_back(std::move(*figure));
   }
   return {};
@@ -172,6 +176,12 @@ Result<ReportRequest> read_report_request(const RouteContext& context, const Req
       STRATA_TRY(figure_request(context, request, report.room, with_layers(report)));
   report.shown = drawing.shown;
   report.layers = drawing.layers;  // from bottom to top
+  for (const Layer& layer : report.layers) {
+    if (!layer.table) continue;
+    const auto table =
+        STRATA_TRY(context.store.tables().find(to_string(*layer.table), request.role()));
+    report.records_at[table.id] = table.sequence;
+  }
   STRATA_TRY(read_figures(context, request, body, report));
   report.max_records = static_cast<std::size_t>(body.max_records);
   report.record_pictures = body.record_pictures;
