@@ -22,7 +22,7 @@ struct LayerFormula {
   std::string expression;
   // Compute the layer again soon after an input has changed.
   bool automatic = false;
-  // The sequence of the model at the last computation. 0 before the first computation.
+  // The model's sequence at the last computation with its present unit and up. 0 without one.
   std::int64_t computed_sequence = 0;
   bool records_changed = false;  // records of an input table have changed since then
   struct Input {

@@ -248,12 +248,16 @@ void OpenRoom::show_model(const Model& updated) {
 
 void OpenRoom::replace_model(const Model& stored,
                              std::shared_ptr<const mesh::ContactShadow> shadow) {
+  bool outdates_layers = false;
   {
     std::lock_guard lock(mutex_);
+    outdates_layers = stored.up != model_.up || stored.unit != model_.unit;
     if (stored.up != model_.up) contact_shadow_ = std::move(shadow);
     model_ = stored;
   }
   participants_part_->tell([&](Listener& l) { l.model_changed(stored); });
+  // As in Models::update.
+  if (outdates_layers) layers_part_->outdate([](const LayerFormula&) { return true; });
   participants_part_->styles_changed();  // the spacing of patterns is in millimeters
 }
 

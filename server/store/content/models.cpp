@@ -269,6 +269,12 @@ Result<Model> Models::update(Model m, const IdempotentResponse<Model>& answer) {
   STRATA_TRY(check_survey(m.object.has_value(), m.survey_date));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Model> {
     STRATA_TRY(check_object(connection, m));
+    // Computed layers can contain lengths, heights and slopes, so they are stale. Afterwards, the
+    // statement below checks the version.
+    STRATA_TRY(connection.query(
+        "UPDATE layers SET computed_sequence = 0 WHERE model_id = $1 AND expression IS NOT NULL AND EXISTS "
+        "(SELECT 1 FROM models WHERE id = $1 AND version = $2 AND (unit, up) IS DISTINCT FROM ($3, $4))",
+        Params().id(m.id).integer(m.version).text(name(m.unit)).text(m.up)));
     auto row = STRATA_TRY(connection.query(
         "UPDATE models SET name = $1, slug = $2, project_id = $3, unit = $4, unit_assumed = $5, scale_verified = $6, up = $7, "
         "north = $8, crs = $9, default_resolution = $10, inventory_number = $11, owner = $12, creator = $13, captured = $14, "

@@ -515,6 +515,35 @@ def test_they_are_computed_anew_by_themselves(server):
     assert server.get(M + "/layers/twice").json()["stale"] is True
 
 
+def test_another_unit_or_upward_direction_makes_them_stale(server):
+    """Layers that follow their inputs are computed again."""
+    server.import_model(folded_grid(), "turned.ply", name="Turned", unit="mm")
+    turned = "/models/turned"
+    for name, recompute in (("Steep", "manual"), ("Level", "automatic")):
+        wish = {"name": name, "expression": "slope", "recompute": recompute, "resolution": 2048}
+        job = server.ok("POST", turned + "/layers", wish, expect=(202,)).json()["id"]
+        assert server.wait_for_job(job)["state"] == "done"
+
+    def is_stale(layer):
+        return server.get(f"{turned}/layers/{layer}").json()["stale"]
+
+    def mean(layer):
+        return server.get(f"{turned}/layers/{layer}/statistics").json()["mean"]
+
+    before = mean("level")
+    server.ok("PATCH", turned, {"name": "Turned", "credit": "Ada"})
+    assert not is_stale("steep")
+    server.ok("PATCH", turned, {"up": "y"})
+    assert is_stale("steep")
+    wait_for(lambda: not is_stale("level"), "the automatic layer to be up to date")
+    assert abs(mean("level") - before) > 10 and mean("steep") == before
+    assert server.ok("POST", turned + "/layers/steep/compute", expect=(200, 202)).status
+    wait_for(lambda: not is_stale("steep"), "the other layer to be up to date")
+    near(mean("steep"), mean("level"), 1e-9)
+    server.ok("PATCH", turned, {"unit": "cm"})
+    assert is_stale("steep")
+
+
 def test_transfer(server):
     """The values are transferred to another scan, even without the inputs."""
     server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")

@@ -387,9 +387,9 @@ export interface Layer {
   recompute?: Recompute;
   /** For layers that are computed from an expression, the slugs of the layers that the expression reads. */
   inputs?: string[];
-  /** For layers that are computed from an expression, true if data that the expression reads has changed since the computation. */
+  /** For layers that are computed from an expression, true if data that the expression reads, or the unit or upward direction of the model, has changed since the computation. */
   stale?: boolean;
-  /** For layers that are computed from an expression, the sequence of the model whose state the last computation read. Absent before the first computation. */
+  /** For layers that are computed from an expression, the sequence of the model whose state the last computation read. Absent before the first computation, and after the unit or upward direction of the model has changed. */
   computed_sequence?: number;
   analysis?: LayerAnalysis;
   /** Sequence of the last edit of the layer. */
