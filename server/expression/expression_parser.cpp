@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -11,9 +10,9 @@
 #include "core/text/closest.h"
 #include "core/text/edtf.h"
 #include "core/text/timestamp.h"
-#include "core/text/utf8.h"
 #include "expression/operators.h"
 #include "expression/surface_functions.h"
+#include "expression/token_reader.h"
 
 namespace strata::query {
 namespace {
@@ -21,40 +20,19 @@ namespace {
 using Op = Expression::Op;
 using Form = Operator::Form;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-struct Token {
-  enum class Kind { end, number, word, quoted, text, symbol };
-  Kind kind = Kind::end;
-  std::size_t at = 0;  // position in the text
-  std::string text;    // words are in lowercase
-  double number = 0;
-};
-
 constexpr std::array<std::string_view, 16> kKeywords{
     "and",  "or",  "not", "true",    "false", "case", "when", "then",
     "else", "end", "is",  "between", "in",    "null", "like", "div"};
-// The words that can follow a number or a condition.
-const std::vector<std::string> kJoiningWords{"and", "or", "not", "is", "between", "like", "div"};
-// The units that users write after numbers. The inch is missing, because `in` is a keyword of the
-// language.
-constexpr std::array<std::string_view, 11> kUnits{"mm",  "cm", "m",  "km", "um",     "nm",
-                                                  "deg", "g",  "kg", "ft", "percent"};
-
-// A recursive descent parser. It keeps the first error and then moves to the end of the text. Every
-// level then returns, and its result is not used.
-class Parser {
+// A recursive descent parser. After an error, the text has ended, so every level returns, and its
+// result is not used.
+class Parser : private TokenReader {
  public:
   Parser(std::string_view text, const std::string& field, Names names)
-      : text_(text), field_(field), names_(names) {
-    advance();
-  }
+      : TokenReader(text, field), names_(names) {}
 
   Result<Expression> whole(bool wants_condition) {
     Expression expression = disjunction();
-    if (token_.kind != Token::Kind::end) refuse_rest();
+    if (token().kind != Token::Kind::end) report_rest();
     if (wants_condition) {
       if (!expression.is_condition() && !expression.is_column())
         refuse("Expected a condition, not a number: compare the number with something", 0,
@@ -66,196 +44,21 @@ class Parser {
     } else {
       expression = numeric(std::move(expression), 0);
     }
-    if (problem_) return tl::unexpected(*problem_);
+    if (problem()) return tl::unexpected(*problem());
     return expression;
   }
 
  private:
   Expression refuse(const std::string& what, std::optional<std::size_t> at = {},
                     std::string_view reason = mistake::kSyntax) {
-    const std::size_t begin = at.value_or(token_.at);
-    return refuse_part(what, position(begin, begin), reason);
+    report(what, at, reason);
+    return {};
   }
 
   Expression refuse_part(const std::string& what, Expression::Position part,
                          std::string_view reason, std::vector<std::string> suggestions = {}) {
-    if (!problem_)
-      problem_ = expression_problem(what, part, field_, reason, std::move(suggestions));
-    at_ = text_.size();
-    token_ = Token{};
+    report_part(what, part, reason, std::move(suggestions));
     return {};
-  }
-
-  // Reports that the expression is complete but text follows, perhaps a unit or a misspelled word.
-  void refuse_rest() {
-    const std::string what = "'" + token_.text + "' was not expected here";
-    const std::string word = token_.text;
-    if (token_.kind != Token::Kind::word) {
-      refuse(what);
-      return;
-    }
-    if (refuse_unit("layer or column")) return;
-    refuse_part(what, position(token_.at, at_), mistake::kSyntax,
-                closest_names(word, kJoiningWords));
-  }
-
-  // Refuses a unit after the last number. `what` has the unit that the number has.
-  bool refuse_unit(const std::string& what) {
-    if (number_end_ == 0 || token_.kind != Token::Kind::word ||
-        std::ranges::find(kUnits, token_.text) == kUnits.end() ||
-        !std::ranges::all_of(text_.substr(number_end_, token_.at - number_end_), is_space))
-      return false;
-    const std::string number(text_.substr(number_at_, number_end_ - number_at_));
-    refuse_part("Write numbers without a unit. '" + number + "' has the unit of the " + what,
-                position(number_at_, at_), mistake::kUnit, {number});
-    return true;
-  }
-
-  Expression::Position position(std::size_t begin_byte, std::size_t end_byte) const {
-    const std::size_t at = characters_before(begin_byte);
-    return {at, characters_before(end_byte) - at};
-  }
-
-  std::size_t characters_before(std::size_t byte) const {
-    return static_cast<std::size_t>(std::ranges::count_if(text_.substr(0, byte), [](char c) {
-      return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
-    }));
-  }
-
-  // --- tokens
-
-  void advance() {
-    while (at_ < text_.size() && is_space(text_[at_])) ++at_;
-    token_ = Token{};
-    token_.at = at_;
-    if (at_ == text_.size()) {
-      token_.text = "the end";
-      return;
-    }
-    const char c = text_[at_];
-    if (is_digit(c) || (c == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1])))
-      return take_number();
-    if (is_letter(c)) return take_word();
-    if (c == '"') return take_quoted();
-    if (c == '\'') return take_text();
-    take_symbol();
-  }
-
-  void take_number() {
-    token_.kind = Token::Kind::number;
-    const char* begin = text_.data() + at_;
-    const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), token_.number);
-    if (error != std::errc() || !std::isfinite(token_.number)) {
-      refuse("This number is too large");
-      return;
-    }
-    token_.text = std::string(begin, end);
-    number_at_ = at_;
-    at_ += static_cast<std::size_t>(end - begin);
-    number_end_ = at_;
-    if (at_ < text_.size() && is_letter(text_[at_])) {
-      std::size_t word_end = at_;
-      while (word_end < text_.size() && (is_letter(text_[word_end]) || is_digit(text_[word_end])))
-        ++word_end;
-      if (std::ranges::find(kUnits, text_.substr(at_, word_end - at_)) != kUnits.end()) {
-        refuse_part("A number ends here. Write numbers without a unit: '" + token_.text +
-                        "' has the unit of the layer or column. A name that begins with a digit "
-                        "needs double quotes",
-                    position(number_at_, word_end), mistake::kUnit, {token_.text});
-        return;
-      }
-    }
-    if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.'))
-      refuse(
-          "A number ends here; write the name of a layer in double quotes if it begins "
-          "with a digit",
-          at_);
-  }
-
-  void take_word() {
-    token_.kind = Token::Kind::word;
-    for (; at_ < text_.size(); ++at_) {
-      const char c = text_[at_];
-      const bool hyphen = c == '-' && at_ + 1 < text_.size() &&
-                          (is_letter(text_[at_ + 1]) || is_digit(text_[at_ + 1]));
-      if (!is_letter(c) && !is_digit(c) && !hyphen) break;
-      token_.text += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    }
-  }
-
-  void take_quoted() {
-    token_.kind = Token::Kind::quoted;
-    const auto end = text_.find('"', at_ + 1);
-    if (end == std::string_view::npos || end == at_ + 1) {
-      refuse(end == at_ + 1 ? "A name is missing between the quotes"
-                            : "The closing double quote is missing");
-      return;
-    }
-    token_.text = std::string(text_.substr(at_ + 1, end - at_ - 1));
-    at_ = end + 1;
-  }
-
-  // A quote inside the text is written twice.
-  void take_text() {
-    token_.kind = Token::Kind::text;
-    std::size_t at = at_ + 1;
-    for (;; ++at) {
-      if (at == text_.size()) {
-        refuse("The closing quote is missing");
-        return;
-      }
-      if (text_[at] == '\'') {
-        if (at + 1 == text_.size() || text_[at + 1] != '\'') break;
-        ++at;
-      }
-      token_.text += text_[at];
-    }
-    if (!is_utf8(token_.text) || token_.text.find('\0') != std::string::npos) {
-      refuse("This text is not encoded as UTF-8");
-      return;
-    }
-    at_ = at + 1;
-  }
-
-  void take_symbol() {
-    token_.kind = Token::Kind::symbol;
-    const auto is_symbol = [](std::string_view text) {
-      return text == "(" || text == ")" || text == "," || text == "." ||
-             std::ranges::any_of(operators(),
-                                 [&](const Operator& row) { return row.is_called(text); });
-    };
-    const std::size_t length =
-        is_symbol(text_.substr(at_, 2)) ? std::min<std::size_t>(2, text_.size() - at_) : 1;
-    token_.text = std::string(text_.substr(at_, length));
-    at_ += length;
-    if (!is_symbol(token_.text)) refuse("This character has no meaning in an expression");
-  }
-
-  bool is(std::string_view text) const {
-    return (token_.kind == Token::Kind::word || token_.kind == Token::Kind::symbol) &&
-           token_.text == text;
-  }
-  bool take(std::string_view text) {
-    if (!is(text)) return false;
-    advance();
-    return true;
-  }
-  bool is_call() const {
-    if (token_.kind != Token::Kind::word) return false;
-    std::size_t next = at_;
-    while (next < text_.size() && is_space(text_[next])) ++next;
-    return next < text_.size() && text_[next] == '(';
-  }
-  // Returns the operator with this form at the current token.
-  const Operator* operator_here(Form form) const {
-    const auto row = std::ranges::find_if(operators(), [&](const Operator& each) {
-      return each.form == form && (is(each.name) || (!each.alias.empty() && is(each.alias)));
-    });
-    return row == operators().end() ? nullptr : &*row;
-  }
-  void expect(std::string_view text) {
-    if (!take(text))
-      refuse("Expected '" + std::string(text) + "' instead of '" + token_.text + "'");
   }
 
   // --- grammar; each level parses operators of higher precedence first
@@ -276,18 +79,18 @@ class Parser {
   Expression negation() {
     const Nesting nesting(*this);
     if (!is("not")) return comparison();
-    const auto at = token_.at;
+    const auto at = token().at;
     advance();
     Expression part = negation();
     return make(Op::negation, at, condition(std::move(part), at));
   }
 
   Expression comparison() {
-    const auto at = token_.at;
+    const auto at = token().at;
     Expression left = sum();
     if (const Operator* row = operator_here(Form::comparison)) {
       advance();
-      const auto right_at = token_.at;
+      const auto right_at = token().at;
       Expression right = sum();
       if (operator_here(Form::comparison))
         refuse("A comparison has two sides only; join comparisons with 'and'");
@@ -303,7 +106,7 @@ class Parser {
         : is("in")    ? membership(left, at)
         : is("like")
             ? likeness(std::move(left), at)
-            : refuse("Expected 'between', 'in' or 'like' instead of '" + token_.text + "'");
+            : refuse("Expected 'between', 'in' or 'like' instead of '" + token().text + "'");
     return negated ? make(Op::negation, at, std::move(test)) : test;
   }
 
@@ -328,7 +131,7 @@ class Parser {
   Expression likeness(Expression text, std::size_t at) {
     if (!text.is_text() && !text.is_column()) refuse("'like' works for texts only", at);
     advance();
-    const auto pattern_at = token_.at;
+    const auto pattern_at = token().at;
     Expression pattern = primary();
     if (!pattern.is_text())
       return refuse("Write the pattern in single quotes, as in like 'crack%'", pattern_at);
@@ -349,10 +152,10 @@ class Parser {
   // Parses the limits after `between`. Both limits are included.
   Expression between(Expression middle, std::size_t at) {
     advance();
-    const auto low_at = token_.at;
+    const auto low_at = token().at;
     Expression low = sum();
     expect("and");
-    const auto high_at = token_.at;
+    const auto high_at = token().at;
     Expression high = sum();
     Expression above = compare(Op::greater_equal, again(middle), at, std::move(low), low_at);
     return make(Op::all, at, std::move(above),
@@ -364,7 +167,7 @@ class Parser {
     expect("(");
     Expression any = make(Op::any, at);
     do {
-      const auto each_at = token_.at;
+      const auto each_at = token().at;
       any.parts.push_back(compare(Op::equal, again(member), at, disjunction(), each_at));
     } while (take(","));
     expect(")");
@@ -375,7 +178,7 @@ class Parser {
   Expression product() { return chain(Form::product, &Parser::power); }
 
   Expression chain(Form form, Expression (Parser::*next)()) {
-    const auto at = token_.at;
+    const auto at = token().at;
     Expression left = (this->*next)();
     while (const Operator* row = operator_here(form))
       left = arithmetic(row->op, std::move(left), at, next);
@@ -383,7 +186,7 @@ class Parser {
   }
 
   Expression power() {
-    const auto at = token_.at;
+    const auto at = token().at;
     Expression left = sign();
     const Operator* row = operator_here(Form::power);
     if (!row) return left;
@@ -395,14 +198,14 @@ class Parser {
   Expression arithmetic(Op op, Expression left, std::size_t at, Expression (Parser::*next)()) {
     left = numeric(std::move(left), at);
     advance();
-    const auto right_at = token_.at;
+    const auto right_at = token().at;
     Expression right = (this->*next)();
     return make(op, at, std::move(left), numeric(std::move(right), right_at));
   }
 
   Expression sign() {
     const Nesting nesting(*this);
-    const auto at = token_.at;
+    const auto at = token().at;
     const Operator* row = operator_here(Form::sign);
     if (!row) return primary();
     advance();
@@ -411,7 +214,7 @@ class Parser {
   }
 
   Expression primary() {
-    const Token token = token_;
+    const Token token = this->token();
     switch (token.kind) {
       case Token::Kind::number: {
         advance();
@@ -469,13 +272,13 @@ class Parser {
         default: break;
       }
     }
-    return refuse_part("There is no function '" + token_.text +
+    return refuse_part("There is no function '" + token().text +
                            "'. Available are valid, if, reclass, " +
                            names_of(Form::number_function) + ", " + names_of(Form::text_function) +
                            ", date, timestamp, interval, " + names_of(Form::time_function) + ", " +
                            names_of(Form::key_function) + surface_functions(),
-                       position(token_.at, at_), mistake::kUnknownFunction,
-                       closest_names(token_.text, function_names()));
+                       position(token().at, token_end()), mistake::kUnknownFunction,
+                       closest_names(token().text, function_names()));
   }
 
   // Returns the end of the list of functions: ", distance, …".
@@ -509,29 +312,29 @@ class Parser {
   // Parses the name of a layer or a column, or of a column of the record that a layer or another
   // column refers to.
   Expression named() {
-    const auto at = token_.at;
+    const auto at = token().at;
     const std::string what = "the name of " + std::string(what_names_are());
     if (is_keyword())
-      return refuse("'" + token_.text + "' is a keyword; to use it as " + what +
+      return refuse("'" + token().text + "' is a keyword; to use it as " + what +
                     ", write it in double quotes");
-    if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
-      return refuse("Expected " + what + " instead of '" + token_.text + "'");
+    if (token().kind != Token::Kind::word && token().kind != Token::Kind::quoted)
+      return refuse("Expected " + what + " instead of '" + token().text + "'");
     Expression expression;
-    std::size_t end = at_;  // of the name
+    std::size_t end = token_end();  // of the name
     if (names_ == Names::layers) {
       expression.op = Op::layer;
-      expression.name = token_.text;
+      expression.name = token().text;
     } else {
       expression.op = Op::column;
-      expression.path.push_back(token_.text);
+      expression.path.push_back(token().text);
     }
     advance();
     while (take(".")) {
-      if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
-        return refuse("Expected the name of a column instead of '" + token_.text + "'");
+      if (token().kind != Token::Kind::word && token().kind != Token::Kind::quoted)
+        return refuse("Expected the name of a column instead of '" + token().text + "'");
       expression.op = Op::column;
-      expression.path.push_back(token_.text);
-      end = at_;
+      expression.path.push_back(token().text);
+      end = token_end();
       advance();
     }
     expression.position = position(at, end);
@@ -554,7 +357,7 @@ class Parser {
   // --- functions along the surface
 
   Expression within() {
-    const auto at = token_.at;
+    const auto at = token().at;
     return make(Op::known, at,
                 surface_function({.op = Op::distance,
                                   .name = "within",
@@ -562,23 +365,18 @@ class Parser {
   }
 
   Expression hysteresis() {
-    const auto at = token_.at;
-    const auto name_end = at_;
-    if (names_ == Names::columns) return refuse_surface();
-    advance();
-    expect("(");
-    const auto part_at = token_.at;
-    Expression part = disjunction();
-    Expression function = make(Op::hysteresis, at, numeric(std::move(part), part_at));
-    Expression low;
-    low.number = threshold();
-    function.parts.push_back(std::move(low));
-    function.number = threshold();
-    if (function.number < function.parts.back().number)
-      refuse("The second threshold must not be lower than the first one");
-    expect(")");
-    function.position = position(at, name_end);
-    return make(Op::known, at, std::move(function));
+    const auto at = token().at;
+    return make(
+        Op::known, at,
+        along_surface(Op::hysteresis, NamedSurfaceFunction::Argument::number,
+                      [this](Expression& function) {
+                        Expression low;
+                        low.number = threshold();
+                        function.parts.push_back(std::move(low));
+                        function.number = threshold();
+                        if (function.number < function.parts.back().number)
+                          refuse("The second threshold must not be lower than the first one");
+                      }));
   }
 
   // Parses a comma and a number, which can be negative.
@@ -586,13 +384,13 @@ class Parser {
     if (!is(",")) refuse("Expected ',' and two thresholds, as in hysteresis(depth, 0.1, 0.3)");
     take(",");
     const double sign = take("-") ? -1 : 1;
-    if (token_.kind != Token::Kind::number) {
+    if (token().kind != Token::Kind::number) {
       refuse("Write the threshold as a number, such as 0.3");
       return 0;
     }
-    const double number = token_.number;
+    const double number = token().number;
     advance();
-    refuse_unit("layer");
+    report_unit("layer");
     return sign * number;
   }
 
@@ -600,33 +398,42 @@ class Parser {
     return refuse_part(
         "Records have no surface: use this function in a computed layer, and that layer in a "
         "condition over layers",
-        position(token_.at, at_), mistake::kComputedLayersOnly);
+        position(token().at, token_end()), mistake::kComputedLayersOnly);
   }
 
-  Expression surface_function(const NamedSurfaceFunction& named) {
-    const Op op = named.op;
-    const auto at = token_.at;
-    const auto name_end = at_;
+  // Parses a function along the surface. `more` parses what follows its first argument.
+  template <class More>
+  Expression along_surface(Op op, NamedSurfaceFunction::Argument argument, More more) {
+    const auto at = token().at;
+    const auto name_end = token_end();
     if (names_ == Names::columns) return refuse_surface();
     advance();
     expect("(");
-    Expression part = surface_argument(named.argument);
-    const bool cleans_condition = op != Op::distance && part.is_condition();
-    Expression function = make(op, at, std::move(part));
-    function.number = std::numeric_limits<double>::infinity();
-    using Limit = NamedSurfaceFunction::Limit;
-    if (named.limit == Limit::needed && !is(","))
-      refuse("Expected ',' and " + std::string(named.limit_name == "area" ? "an " : "a ") +
-             std::string(named.limit_name));
-    if (named.limit != Limit::none && take(",")) function.number = limit(named);
-    if (op == Op::hot_spot_chance) function.parts.push_back(permutations());
+    Expression function = make(op, at, surface_argument(argument));
+    more(function);
     expect(")");
     function.position = position(at, name_end);
+    return function;
+  }
+
+  Expression surface_function(const NamedSurfaceFunction& named) {
+    using Limit = NamedSurfaceFunction::Limit;
+    const auto at = token().at;
+    Expression function = along_surface(named.op, named.argument, [&](Expression& call) {
+      call.number = std::numeric_limits<double>::infinity();
+      if (named.limit == Limit::needed && !is(","))
+        refuse("Expected ',' and " + std::string(named.limit_name == "area" ? "an " : "a ") +
+               std::string(named.limit_name));
+      if (named.limit != Limit::none && take(",")) call.number = limit(named);
+      if (named.op == Op::hot_spot_chance) call.parts.push_back(permutations());
+    });
+    const bool cleans_condition = named.op != Op::distance && !function.parts.empty() &&
+                                  function.parts.front().is_condition();
     return cleans_condition ? make(Op::known, at, std::move(function)) : function;
   }
 
   Expression surface_argument(NamedSurfaceFunction::Argument kind) {
-    const auto at = token_.at;
+    const auto at = token().at;
     Expression part = disjunction();
     if (kind == NamedSurfaceFunction::Argument::condition) return source(std::move(part), at);
     if (kind == NamedSurfaceFunction::Argument::either && part.is_condition()) return part;
@@ -643,13 +450,13 @@ class Parser {
   }
 
   double limit(const NamedSurfaceFunction& named) {
-    if (token_.kind != Token::Kind::number) {
+    if (token().kind != Token::Kind::number) {
       refuse("Write the " + std::string(named.limit_name) + " as a number, such as 20");
       return 0;
     }
-    const double number = token_.number;
+    const double number = token().number;
     advance();
-    refuse_unit(std::string(named.limit_unit));
+    report_unit(std::string(named.limit_unit));
     return number;
   }
 
@@ -658,11 +465,11 @@ class Parser {
     Expression number;
     number.number = kDefaultPermutations;
     if (!take(",")) return number;
-    if (token_.kind != Token::Kind::number || token_.number < kMinPermutations ||
-        token_.number > kMaxPermutations || token_.number != std::floor(token_.number))
+    if (token().kind != Token::Kind::number || token().number < kMinPermutations ||
+        token().number > kMaxPermutations || token().number != std::floor(token().number))
       return refuse("Write the number of permutations as a whole number from " +
                     std::to_string(kMinPermutations) + " to " + std::to_string(kMaxPermutations));
-    number.number = token_.number;
+    number.number = token().number;
     advance();
     return number;
   }
@@ -672,18 +479,18 @@ class Parser {
   Expression literal() {
     Expression expression;
     expression.op = Op::text;
-    expression.position = position(token_.at, at_);
-    expression.text = token_.text;
+    expression.position = position(token().at, token_end());
+    expression.text = token().text;
     advance();
     return expression;
   }
 
   Expression quoted_time(bool may_be_open) {
-    if (token_.kind != Token::Kind::text)
+    if (token().kind != Token::Kind::text)
       return refuse("Write the time in single quotes, as in date('2024-05-02')");
-    if (!(may_be_open && token_.text == "..") && !parse_edtf(token_.text) &&
-        !utc_timestamp(token_.text))
-      return refuse("'" + token_.text.substr(0, 100) +
+    if (!(may_be_open && token().text == "..") && !parse_edtf(token().text) &&
+        !utc_timestamp(token().text))
+      return refuse("'" + token().text.substr(0, 100) +
                     "' is not a date; write dates as 2024-05-02");
     return literal();
   }
@@ -704,42 +511,42 @@ class Parser {
     expect(",");
     expression.text += "/" + quoted_time(true).text;
     expect(")");
-    if (!problem_ && !parse_edtf(expression.text))
+    if (!problem() && !parse_edtf(expression.text))
       refuse("'" + expression.text.substr(0, 200) + "' is not an interval of days");
     return expression;
   }
 
   Expression text_function(const Operator& called) {
-    const auto at = token_.at;
+    const auto at = token().at;
     advance();
     expect("(");
-    const auto part_at = token_.at;
+    const auto part_at = token().at;
     Expression part = textual(disjunction(), part_at);
     expect(")");
     return make(called.op, at, std::move(part));
   }
 
   Expression time_function(const Operator& called) {
-    const auto at = token_.at;
+    const auto at = token().at;
     advance();
     expect("(");
-    const auto first_at = token_.at;
+    const auto first_at = token().at;
     Expression first = textual(disjunction(), first_at);
     expect(",");
-    const auto second_at = token_.at;
+    const auto second_at = token().at;
     Expression second = textual(disjunction(), second_at);
     expect(")");
     return make(called.op, at, std::move(first), std::move(second));
   }
 
   Expression key_function(const Operator& called) {
-    const auto at = token_.at;
+    const auto at = token().at;
     advance();
     expect("(");
     Expression relation = named();
     if (!relation.is_column()) refuse("Expected a column of keys here", at);
     expect(",");
-    Expression keys = make(Op::keys, token_.at);
+    Expression keys = make(Op::keys, token().at);
     expect("(");
     do keys.parts.push_back(argument());
     while (take(","));
@@ -751,10 +558,10 @@ class Parser {
   // --- choices
 
   Expression choice() {
-    const auto at = token_.at;
+    const auto at = token().at;
     advance();
     expect("(");
-    const auto condition_at = token_.at;
+    const auto condition_at = token().at;
     Expression when = condition(disjunction(), condition_at);
     expect(",");
     Expression then = argument();
@@ -772,12 +579,12 @@ class Parser {
 
   // Parses `case when … then … else … end` as a chain of choices.
   Expression cases() {
-    const auto at = token_.at;
+    const auto at = token().at;
     advance();
     std::vector<std::pair<Expression, Expression>> branches;
-    if (!is("when")) return refuse("Expected 'when' instead of '" + token_.text + "'");
+    if (!is("when")) return refuse("Expected 'when' instead of '" + token().text + "'");
     while (take("when")) {
-      const auto condition_at = token_.at;
+      const auto condition_at = token().at;
       Expression when = condition(disjunction(), condition_at);
       expect("then");
       branches.emplace_back(std::move(when), argument());
@@ -793,7 +600,7 @@ class Parser {
   // Parses a table of limits. Each value applies from its limit up to the next one. The value
   // before the first limit applies below it.
   Expression reclass() {
-    const auto at = token_.at;
+    const auto at = token().at;
     advance();
     expect("(");
     const Expression number = argument();
@@ -810,7 +617,7 @@ class Parser {
   }
 
   Expression number_function(const Operator& called) {
-    const auto at = token_.at;
+    const auto at = token().at;
     advance();
     expect("(");
     Expression expression = make(called.op, at, argument());
@@ -822,7 +629,7 @@ class Parser {
   }
 
   Expression argument() {
-    const auto at = token_.at;
+    const auto at = token().at;
     return numeric(disjunction(), at);
   }
 
@@ -852,10 +659,10 @@ class Parser {
 
   template <class Next>
   Expression join(Op op, Expression left, Next next) {
-    const auto at = token_.at;
+    const auto at = token().at;
     left = condition(std::move(left), at);
     advance();
-    const auto right_at = token_.at;
+    const auto right_at = token().at;
     Expression right = condition(next(), right_at);
     if (left.op != op) return make(op, at, std::move(left), std::move(right));
     left.parts.push_back(std::move(right));
@@ -908,15 +715,9 @@ class Parser {
     Parser& parser;
   };
 
-  const std::string_view text_;
-  const std::string& field_;
   const Names names_;
-  std::size_t at_ = 0;
-  Token token_;
-  std::size_t number_at_ = 0, number_end_ = 0;  // bytes of the last number
   int depth_ = 0;
   std::size_t repeated_ = 0;
-  std::optional<Error> problem_;
 };
 
 Result<Expression> parse(std::string_view text, const std::string& field, Names names,
@@ -939,7 +740,7 @@ Result<Expression> parse_number(std::string_view text, const std::string& field,
 }
 
 std::string name_in_expression(const std::string& slug) {
-  const bool is_plain = !slug.empty() && is_letter(slug.front()) &&
+  const bool is_plain = !slug.empty() && begins_name(slug.front()) &&
                         std::ranges::find(kKeywords, slug) == kKeywords.end();
   return is_plain ? slug : '"' + slug + '"';
 }
