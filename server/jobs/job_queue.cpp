@@ -148,6 +148,14 @@ JobStatus snapshot(const Job& job) {
   return status;
 }
 
+bool needs_most_memory(JobKind kind) { return kind == JobKind::import || kind == JobKind::image; }
+
+// Returns whether a job must not begin before the end of a running job.
+bool must_wait_for(const JobStatus& job, const JobStatus& running) {
+  return (needs_most_memory(job.kind) && needs_most_memory(running.kind)) ||
+         (job.user == running.user && job.kind == running.kind);
+}
+
 Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
   if (progress.cancelled()) return cancelled_problem();
   try {
@@ -171,6 +179,7 @@ struct JobQueue::Impl {
   std::condition_variable changed;
   std::map<JobId, Job> jobs;  // by id, which is the order of the requests
   std::deque<JobId> waiting;
+  std::vector<JobId> running;
   std::size_t coming = 0;  // number of jobs that are being stored and do not wait yet
   // The first id follows the current time in milliseconds. Therefore new ids are higher than all
   // earlier ids, if there are on average fewer than 1000 jobs per second.
@@ -180,7 +189,7 @@ struct JobQueue::Impl {
   bool stopping = false;
   store::Jobs* store = nullptr;
   std::optional<Uuid> node;
-  std::thread thread;
+  std::vector<std::thread> workers;
 
   void take_over() {
     if (!store) return;
@@ -254,14 +263,26 @@ struct JobQueue::Impl {
         result->file.reset();
   }
 
+  // Returns the first waiting job that may begin now, or the end of `waiting`.
+  std::deque<JobId>::iterator next() {
+    return std::ranges::find_if(waiting, [this](JobId id) {
+      return std::ranges::none_of(running, [&](JobId other) {
+        return must_wait_for(jobs.at(id).status, jobs.at(other).status);
+      });
+    });
+  }
+
   void work_on_jobs() {
     std::unique_lock lock(mutex);
     for (;;) {
-      changed.wait(lock, [&] { return stopping || !waiting.empty(); });
+      changed.wait(lock, [&] { return stopping || next() != waiting.end(); });
       if (stopping) return;
+      const auto first = next();
+      const JobId id = *first;
+      waiting.erase(first);
+      running.push_back(id);
       // The reference stays valid during the job, because only finished jobs are deleted.
-      Job& job = jobs.at(waiting.front());
-      waiting.pop_front();
+      Job& job = jobs.at(id);
       job.status.state = JobState::running;
       const auto progress = job.progress;
       Work work = std::move(job.work);
@@ -279,6 +300,8 @@ struct JobQueue::Impl {
       keep_end(ended, cut_short);
       lock.lock();
       job.status = std::move(ended);
+      std::erase(running, id);
+      changed.notify_all();
       forget_old();
       lock.unlock();
       give_back_memory();
@@ -291,7 +314,8 @@ JobQueue::JobQueue(store::Jobs* store, std::optional<Uuid> node) : impl_(std::ma
   impl_->store = store;
   impl_->node = node;
   impl_->take_over();
-  impl_->thread = std::thread([impl = impl_.get()] { impl->work_on_jobs(); });
+  for (int i = 0; i < kWorkers; ++i)
+    impl_->workers.emplace_back([impl = impl_.get()] { impl->work_on_jobs(); });
 }
 
 JobQueue::~JobQueue() { stop(); }
@@ -303,7 +327,8 @@ void JobQueue::stop() {
     for (auto& [id, job] : impl_->jobs) job.progress->cancel();
     impl_->changed.notify_all();
   }
-  if (impl_->thread.joinable()) impl_->thread.join();
+  for (std::thread& worker : impl_->workers)
+    if (worker.joinable()) worker.join();
 }
 
 Result<JobId> JobQueue::add(ProjectId project, Work work, std::string user, JobKind kind) {

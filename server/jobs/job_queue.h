@@ -49,20 +49,23 @@ struct JobStatus {
   std::optional<JobResult> result;
 };
 
-// Runs long work on a separate thread, one job at a time, in the order of the requests. Until the
-// queue is destroyed, it keeps the newest 1000 finished jobs, and the files of the newest
-// kFilesKept jobs with a file. Ids are higher than the ids of all earlier queues, so an old id
-// never refers to a new job.
+// Runs long work on separate threads, at most kWorkers jobs at a time, in the order of the
+// requests. Only one import or picture runs at a time, because it can need most of the memory. Jobs
+// of one user and one kind also run one after the other, so a long job does not keep the jobs of
+// other users waiting. Until the queue is destroyed, it keeps the newest 1000 finished jobs, and
+// the files of the newest kFilesKept jobs with a file. Ids are higher than the ids of all earlier
+// queues, so an old id never refers to a new job.
 class JobQueue {
  public:
   static constexpr int kFilesKept = 16;
+  static constexpr int kWorkers = 2;
   // With `store`, jobs are kept for store::Jobs::kDaysKept days, also after the queue is destroyed,
   // but without their files. Unfinished jobs of an earlier queue are reported as failed. `store`
   // must outlive the queue. `node` is this server, if the site has several servers. Blocks.
   explicit JobQueue(store::Jobs* store = nullptr, std::optional<Uuid> node = {});
   ~JobQueue();
-  // Cancels the running job, joins the thread and refuses new jobs. Call it before the objects that
-  // jobs use are destroyed. The destructor also calls it. Idempotent.
+  // Cancels the running jobs, joins the threads and refuses new jobs. Call it before the objects
+  // that jobs use are destroyed. The destructor also calls it. Idempotent.
   void stop();
   using Work = std::function<Result<JobResult>(Progress&)>;
   // Fails with `busy` if 64 jobs wait, with `unavailable` if the queue is stopping, or with the

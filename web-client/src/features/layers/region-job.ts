@@ -135,6 +135,7 @@ export class RegionJob implements ReactiveController {
         ? html`<div class="progress" role="progressbar" aria-label=${words.progress} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
               <i ${styled({ width: `${percent}%` })}></i>
             </div>
+            <span class="hint">${job?.state === "queued" ? texts.layer_jobs.queued : (job?.message ?? "")}</span>
             <button type="button" class="stop" @click=${() => void this.cancel()}>${words.stop}</button>`
         : nothing
     }

@@ -155,6 +155,7 @@ export class StrataClassChanges extends LitElement {
       ${
         this._busy
           ? html`<progress aria-label=${words.progress} max="100" value=${percent}></progress>
+            <span class="hint">${this._job?.state === "queued" ? texts.layer_jobs.queued : (this._job?.message ?? "")}</span>
             <button type="button" @click=${() => this.reset()}>${words.stop}</button>`
           : nothing
       }
