@@ -1,6 +1,6 @@
 // Condition reports on the page: sections, texts, rows of the title block, a logo, and figures. The
-// real server writes a DOCX and a PDF, which the test reads. Reports are also canceled, refused, and
-// left running in the background. Viewers can also write reports.
+// real server writes a DOCX and a PDF, which the test reads. Reports and their previews are also
+// canceled, refused, and left running in the background. Viewers can also write reports.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";
@@ -46,6 +46,10 @@ const bar = (who) => dialog(who).getByRole("progressbar");
 const notice = ({ page }, text) => page.locator("strata-notices .notice", { hasText: text });
 const closed = (who) => dialog(who).waitFor({ state: "detached" });
 const make = (who) => button(who, words.make).click();
+const preview = (who) => button(who, words.preview).click();
+const preview_link = (who, name = words.preview_open) =>
+  dialog(who).getByRole("link", { name, exact: true });
+const is_file = (response) => /\/api\/v1\/jobs\/\d+\/file$/.test(response.url());
 const has_focus = (locator) =>
   locator.evaluate((element) => element.getRootNode().activeElement === element);
 
@@ -160,12 +164,15 @@ test("a wrong input is shown at its field, and no report is requested", async ()
   await field(ada, "records").fill("1001");
   await open_section(ada, "findings"); // the section opens again because of the problem
   await field(ada, "text_condition").fill("x".repeat(20_001));
-  await make(ada);
-  for (const name of ["field_0_label", "scale_right", "records", "text_condition"])
-    assert.equal(await field(ada, name).getAttribute("aria-invalid"), "true", name);
-  await dialog(ada).getByText(words.wrong_label).waitFor();
-  await dialog(ada).getByText(words.wrong).waitFor();
-  await wait_for(() => has_focus(field(ada, "field_0_label")), "the focus on the first field");
+  for (const request of [preview, make]) {
+    await field(ada, "field_0_value").fill("Museum of Strata");
+    await request(ada);
+    for (const name of ["field_0_label", "scale_right", "records", "text_condition"])
+      assert.equal(await field(ada, name).getAttribute("aria-invalid"), "true", name);
+    await dialog(ada).getByText(words.wrong_label).waitFor();
+    await dialog(ada).getByText(words.wrong).waitFor();
+    await wait_for(() => has_focus(field(ada, "field_0_label")), "the focus on the first field");
+  }
   assert.ok(await field(ada, "records").isVisible());
   assert.equal(asked.length, 0);
   await shot(ada, "wrong");
@@ -265,6 +272,31 @@ test("the server writes a DOCX with the texts in their order", async () => {
   await shot(ada, "saved");
 });
 
+test("the preview is a PDF in another tab, and the dialog says when it is out of date", async () => {
+  assert.equal(await preview_link(ada).count(), 0);
+  const [answer] = await Promise.all([ada.page.waitForResponse(is_file), preview(ada)]);
+  await preview_link(ada).waitFor();
+  assert.equal((await answer.body()).toString("latin1", 0, 5), "%PDF-");
+  assert.deepEqual([asked.at(-1).format, asked.at(-1).title], ["pdf", "Pot of Agathe"]);
+  await dialog(ada).getByText(words.preview_ready).waitFor();
+  assert.ok(await radio(ada, words.formats.docx).isChecked());
+  assert.equal(await ada.page.locator("strata-job-list .job").count(), 0);
+  const [tab] = await Promise.all([ada.context.waitForEvent("page"), preview_link(ada).click()]);
+  await wait_for(
+    () => tab.evaluate(() => document.contentType === "application/pdf"),
+    "the browser's viewer of PDF",
+  );
+  assert.equal(tab.url(), await preview_link(ada).getAttribute("href"));
+  if (process.env.STRATA_TEST_OUTPUT) await shot({ page: tab }, "preview_tab");
+  await tab.close();
+  await field(ada, "title").fill("Pot of Berta");
+  await dialog(ada).getByText(words.preview_stale).waitFor();
+  await shot(ada, "preview_stale");
+  await field(ada, "title").fill("Pot of Agathe");
+  await dialog(ada).getByText(words.preview_ready).waitFor();
+  await shot(ada, "preview");
+});
+
 test("the server writes a PDF in another language", async () => {
   await radio(ada, words.formats.pdf).click();
   await radio(ada, "German").click();
@@ -276,7 +308,24 @@ test("the server writes a PDF in another language", async () => {
   assert_order(text, ["Damage survey", "The rim is stable.", german.quantities, german.methods]);
 });
 
-test("a report can be canceled", async () => {
+/** Starts a job with a button of the dialog, and returns the id of the job. */
+async function start(who, press) {
+  const [response] = await Promise.all([
+    who.page.waitForResponse(
+      (response) =>
+        response.request().method() === "POST" &&
+        new URL(response.url()).pathname.endsWith("/report") &&
+        response.status() === 202,
+    ),
+    press(who),
+  ]);
+  await bar(who).waitFor();
+  return (await response.json()).id;
+}
+const job_of = (who, id) =>
+  who.page.evaluate(async (at) => (await fetch(`/api/v1/jobs/${at}`)).json(), id);
+
+test("a report and a preview can be canceled", async () => {
   const downloads = [];
   ada.page.on("download", (file) => downloads.push(file.suggestedFilename()));
   const figures = section(ada, "figures");
@@ -284,44 +333,38 @@ test("a report can be canceled", async () => {
     await figures.locator("select").selectOption(`view:${view.id}`);
     await figures.getByRole("button", { name: words.add_figure }).click();
   }
-  const [started] = await Promise.all([
-    ada.page.waitForResponse(
-      (response) =>
-        response.request().method() === "POST" &&
-        new URL(response.url()).pathname.endsWith("/report") &&
-        response.status() === 202,
-    ),
-    make(ada),
-  ]);
-  await bar(ada).waitFor();
-  await shot(ada, "making");
-  await button(ada, words.cancel).click();
-  await bar(ada).waitFor({ state: "detached" });
-  const job = await ada.page.evaluate(
-    async (at) => (await fetch(`/api/v1/jobs/${at}`)).json(),
-    (await started.json()).id,
-  );
-  assert.deepEqual([job.state, job.file, downloads], ["cancelled", undefined, []]);
+  for (const [press, cancel] of [
+    [make, words.cancel],
+    [preview, words.cancel_preview],
+  ]) {
+    const started = await start(ada, press);
+    await shot(ada, "making");
+    await button(ada, cancel).click();
+    await bar(ada).waitFor({ state: "detached" });
+    const job = await job_of(ada, started);
+    assert.deepEqual([job.state, job.file, downloads], ["cancelled", undefined, []]);
+  }
+  await dialog(ada).getByText(words.preview_stale).waitFor(); // the earlier preview stays
 });
 
 test("a problem that the server reports is shown at its field", async () => {
-  const other = async (change, problem) => {
+  const other = async (press, change, problem) => {
     await ada.page.route("**/report", (route) =>
       route.continue({
         postData: JSON.stringify({ ...route.request().postDataJSON(), ...change }),
       }),
     );
-    await make(ada);
+    await press(ada);
     await problem.waitFor();
     await ada.page.unroute("**/report");
   };
   const wrong_view = [{ direction: "front" }, { view: "nowhere" }];
-  await other({ figures: wrong_view }, dialog(ada).locator("#scale_back_problem"));
+  await other(preview, { figures: wrong_view }, dialog(ada).locator("#scale_back_problem"));
   assert.equal(await field(ada, "scale_back").getAttribute("aria-invalid"), "true");
   await wait_for(() => has_focus(field(ada, "scale_back")), "the focus on the field");
   await shot(ada, "refused");
   const twice = [{ part: "condition" }, { part: "condition" }];
-  await other({ sections: twice }, section(ada, "object").locator(".error"));
+  await other(make, { sections: twice }, section(ada, "object").locator(".error"));
   assert.equal(await dialog(ada).locator("#scale_back_problem").count(), 0);
   assert.equal(await bar(ada).count(), 0);
 });
@@ -347,6 +390,17 @@ test("after the dialog has closed, a notice offers the file", async () => {
   );
   assert.match(file.name, /\.pdf$/);
   await row.waitFor({ state: "detached" });
+});
+
+test("a preview is canceled when the dialog closes", async () => {
+  await open_dialog(ada);
+  assert.equal(await preview_link(ada).count(), 0);
+  const started = await start(ada, preview);
+  await ada.page.keyboard.press("Escape");
+  await closed(ada);
+  await ada.page.locator("strata-job-list .job").waitFor({ state: "detached" });
+  const { state, file } = await job_of(ada, started);
+  assert.deepEqual([state, file], ["cancelled", undefined]);
 });
 
 test("the draft stays while the model is open, and the choices also in another visit", async () => {
@@ -386,7 +440,10 @@ test("the draft stays while the model is open, and the choices also in another v
   await closed(ada);
 });
 
-test("viewers write reports on a phone", async () => {
+test("viewers write reports on a phone, which saves the preview for its own viewer", async () => {
+  await phone.page.addInitScript(() =>
+    Object.defineProperty(navigator, "pdfViewerEnabled", { value: false }),
+  );
   await open_model(phone);
   await open_dialog(phone);
   await shot(phone, "phone");
@@ -395,6 +452,12 @@ test("viewers write reports on a phone", async () => {
   await section(phone, "condition").locator('[data-order="up:condition"]').tap();
   await field(phone, "text_condition").fill("Seen on site.");
   await shot(phone, "phone_sections");
+  await button(phone, words.preview).tap();
+  await preview_link(phone, words.preview_save).waitFor();
+  await shot(phone, "phone_preview");
+  const shown = await download(phone, () => preview_link(phone, words.preview_save).tap());
+  assert.match(shown.name, /\.pdf$/);
+  assert_order(pdf_text(shown.path), [words.parts.condition, "Seen on site."]);
   const file = await download(phone, () => button(phone, words.make).tap());
   assert.match(file.name, /\.docx$/);
   assert_order(docx_text(file.path), [

@@ -1,6 +1,6 @@
 // The job of a dialog that makes a file, and the dialog's footer with its progress and result.
 
-import { css, html, type ReactiveController, type ReactiveControllerHost } from "lit";
+import { css, html, nothing, type ReactiveController, type ReactiveControllerHost } from "lit";
 import type { TemplateResult } from "lit";
 import { ApiError } from "../net/api-error";
 import type { ProblemBody } from "../core/types";
@@ -15,6 +15,10 @@ export interface FileFooter {
   make: string;
   making: string;
   cancel: string;
+  /** Other buttons, before the button that makes the file. A running job has none. */
+  actions?: TemplateResult;
+  /** A text below the problem or the saved file. */
+  status?: TemplateResult | null;
   saved(file: string): string;
   /** A problem that belongs to no field, or an empty text. */
   problem: string;
@@ -52,7 +56,7 @@ export class AwaitedFile implements ReactiveController {
   }
 
   hostDisconnected(): void {
-    this._host.session.files.awaited = null; // after the dialog has closed, a notice offers the file
+    void this._host.session.files.leave();
   }
 
   hostUpdate(): void {
@@ -70,7 +74,7 @@ export class AwaitedFile implements ReactiveController {
     this._host.requestUpdate();
     try {
       await start();
-      if (!isOpen()) this._host.session.files.awaited = null;
+      if (!isOpen()) void this._host.session.files.leave();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this._refuse(error.problem);
@@ -90,13 +94,16 @@ export class AwaitedFile implements ReactiveController {
   }
 
   /** Renders the content of a dialog's footer. */
-  footer({ form, make, making, cancel, saved, problem }: FileFooter): TemplateResult {
+  footer(footer: FileFooter): TemplateResult {
+    const { form, make, making, cancel, saved, problem, actions = nothing, status } = footer;
     const { running, isFree } = this;
     const { saved: file } = this._host.session.files;
     if (!running)
-      return html`<div slot="told" class="told ${problem || file ? "" : "nothing"}">
-          ${problem ? html`<span class="error" role="alert">${problem}</span>` : html`<span class="hint" role="status">${file ? saved(file) : ""}</span>`}
+      return html`<div slot="told" class="told ${problem || file || status ? "" : "nothing"}">
+          ${problem ? html`<span class="error" role="alert">${problem}</span>` : nothing}
+          <span class="hint" role="status">${problem || !file ? nothing : saved(file)} ${status}</span>
         </div>
+        ${actions}
         <button slot="actions" class="primary" form=${form} ?disabled=${!isFree}>${make}</button>`;
     const { job } = running;
     const percent = Math.round(job.progress * 100);

@@ -26,6 +26,7 @@ import {
 } from "../../domain/reports";
 import { AwaitedFile, awaitedFileStyles } from "../../session/awaited-file";
 import { followSession } from "../../session/follow-session";
+import type { ShowFile } from "../../session/file-jobs";
 import type { ModelSession } from "../../session/model-session";
 import "../../ui/dialog";
 import { focusWrong } from "./focus-wrong";
@@ -36,6 +37,7 @@ import { formatChoiceStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "./report-fields";
 import "./report-logo";
+import { previewRequest, ReportPreview, type ReportSettings } from "./report-preview";
 import { fieldOf, problemsIn, without, type Problems } from "./report-problems";
 import "./report-sections";
 import { reportStyles } from "./report-styles";
@@ -49,6 +51,7 @@ export class StrataReportDialog extends LitElement {
   @state() private _input: ReportInput = reportInput(null, "en");
   @state() private _logo: Logo | null = null;
   @state() private _problems: Problems = new Map();
+  @state() private _preview: ReportPreview | null = null;
   private _sent: ReportInput = this._input; // the input of the last request
   private readonly _file = new AwaitedFile(this, (problem) => this.refuse(problem));
 
@@ -65,6 +68,12 @@ export class StrataReportDialog extends LitElement {
     const language = pageLanguage(pageLocale(), []);
     this._input = reports.draft ?? reportInput(reports.choices.value, language);
     this._logo = keptLogo(reports.logo.value);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this._preview?.release();
+    this._preview = null;
   }
 
   // ── rendering ──────────────────────────────────────────────────────────────────────────────────
@@ -96,10 +105,12 @@ export class StrataReportDialog extends LitElement {
       ${this._file.footer({
         form: "report",
         make: words.make,
-        making: words.making,
-        cancel: words.cancel,
+        making: this.session.files.awaitsPreview ? words.making_preview : words.making,
+        cancel: this.session.files.awaitsPreview ? words.cancel_preview : words.cancel,
         saved: words.saved,
         problem: this._problems.get("") ?? "",
+        actions: html`<button slot="actions" ?disabled=${!this._file.isFree} @click=${() => this.preview()}>${words.preview}</button>`,
+        status: this._preview?.render(this.settings) ?? null,
       })}
     </strata-dialog>`;
   }
@@ -344,19 +355,39 @@ export class StrataReportDialog extends LitElement {
 
   // ── the job ────────────────────────────────────────────────────────────────────────────────────
 
+  private get settings(): ReportSettings {
+    return { input: this._input, layers: this.chosenLayers, logo: this._logo };
+  }
+
   private readonly onSubmit = (event: Event): void => {
     event.preventDefault();
+    const request = reportRequest(this._input, this.chosenLayers, this._logo?.data ?? null);
+    this.start((title) => this.session.reports.make(words.job(title), words.ready, request));
+  };
+
+  private preview(): void {
+    const { settings } = this;
+    const show: ShowFile = (pdf, name) => {
+      this._preview?.release();
+      this._preview = new ReportPreview(pdf, name, settings);
+    };
+    this.start((title) =>
+      this.session.reports.preview(words.preview_job(title), previewRequest(settings), show),
+    );
+  }
+
+  /** Starts a job with the current settings, if they are valid. */
+  private start(make: (title: string) => Promise<number>): void {
     if (!this._file.isFree) return;
-    const { reports, model, views } = this.session;
+    const { model, views } = this.session;
     const problems = problemsIn(this._input, views.all);
     this.tell(problems);
     if (problems.size > 0) return;
     this._sent = this._input;
-    const request = reportRequest(this._input, this.chosenLayers, this._logo?.data ?? null);
-    const name = words.job(request.title ?? model?.name ?? "");
+    const title = this._input.title.trim() || (model?.name ?? "");
     void this._file.make(
-      () => reports.make(name, words.ready, request),
+      () => make(title),
       () => this.isConnected,
     );
-  };
+  }
 }

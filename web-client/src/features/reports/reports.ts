@@ -3,8 +3,9 @@
 import type { Api } from "../../net/api";
 import type { ReportInput } from "../../domain/reports";
 import type { ReportRequest } from "../../core/protocol.gen";
+import type { Job } from "../../core/types";
 import { Kept } from "../../core/kept";
-import type { FileJobs } from "../../session/file-jobs";
+import type { FileJobs, ShowFile } from "../../session/file-jobs";
 
 export class Reports {
   /**
@@ -26,13 +27,23 @@ export class Reports {
    * title of the notice that offers the file. Throws an ApiError if the server refuses the request.
    */
   make(name: string, ready: string, wish: ReportRequest): Promise<number> {
-    return this._files.start(name, ready, () =>
-      this._api.json("POST /models/{model}/report", {
-        path: { model: this._modelId },
-        body: wish,
-        header: { Prefer: "respond-async" },
-      }),
-    );
+    return this._files.start(name, ready, () => this.ask(wish));
+  }
+
+  /**
+   * Starts the job of a preview and returns its key. `show` receives the file while the dialog
+   * waits for it. Throws like make().
+   */
+  preview(name: string, wish: ReportRequest, show: ShowFile): Promise<number> {
+    return this._files.preview(name, () => this.ask(wish), show);
+  }
+
+  private ask(wish: ReportRequest): Promise<Job> {
+    return this._api.json("POST /models/{model}/report", {
+      path: { model: this._modelId },
+      body: wish,
+      header: { Prefer: "respond-async" },
+    });
   }
 
   /** The choices that are kept for reports of other models. They are read at the first dialog. */
