@@ -147,7 +147,7 @@ class Body {
     else  // Word joins tables without a paragraph between them.
       add_paragraph(body_, "TableGap", "");
     const std::vector<double> widths_mm = column_widths_mm(table);
-    xml_node node = begin_table("ReportTable", widths_mm);
+    xml_node node = begin_table(has_rules(table) ? "ReportTable" : "PlainTable", widths_mm);
     xml_node look = node.child("w:tblPr").append_child("w:tblLook");
     set(look, "w:firstRow", has_head(table) ? 1 : 0);
     set(look, "w:lastRow", table.total.empty() ? 0 : 1);

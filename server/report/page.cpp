@@ -32,6 +32,15 @@ bool has_head(const Table& table) {
                              [](const Column& column) { return !column.name.empty(); });
 }
 
+bool has_rules(const Table& table) {
+  const auto all_pictures = [](const std::vector<Cell>& row) {
+    return !row.empty() &&
+           std::ranges::all_of(row, [](const Cell& cell) { return cell.picture.has_value(); });
+  };
+  return has_head(table) || !table.total.empty() || table.rows.empty() ||
+         !std::ranges::all_of(table.rows, all_pictures);
+}
+
 ShownSize shown_size(double width_mm, int width, int height, double most_width_mm,
                      double most_height_mm) {
   const double height_mm = width_mm * height / width;

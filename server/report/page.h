@@ -29,6 +29,10 @@ std::vector<double> column_widths_mm(const Table& table);
 // Returns whether a table has a first row, which names its columns.
 bool has_head(const Table& table);
 
+// Returns whether a table has lines between and around its rows. A table that only arranges
+// pictures has none.
+bool has_rules(const Table& table);
+
 struct ShownSize {
   double width_mm = 0, height_mm = 0;
   double scale = 1;  // below 1 if the picture is reduced

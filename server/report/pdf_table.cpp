@@ -10,6 +10,7 @@ namespace strata::report {
 namespace {
 
 constexpr double kSwatchGap = points(1.5);
+constexpr std::size_t kMaxTogether = 12;   // rows of a table that stays on one page
 constexpr double kPictureGap = points(1);  // between a picture and the text below it
 
 struct LaidCell {
@@ -45,13 +46,19 @@ class TableFlow {
         table_(table),
         place_(place),
         widths_mm_(column_widths_mm(table)),
+        has_rules_(has_rules(table)),
         caption_(pages.context(), {{table.caption}}, kCaption, pages.language(), pages.width()) {}
 
   Result<double> least_height() {
-    double height = caption_height();
-    if (has_head(table_)) height += STRATA_TRY(head()).height();
-    if (!table_.rows.empty()) height += STRATA_TRY(laid(table_.rows[0], kTableText, "TD")).height();
-    return height;
+    double least = caption_height();
+    if (has_head(table_)) least += STRATA_TRY(head()).height();
+    if (table_.rows.empty()) return least;
+    double height = least;
+    least += STRATA_TRY(laid(table_.rows[0], kTableText, "TD")).height();
+    if (table_.rows.size() > kMaxTogether) return least;
+    for (const auto& row : table_.rows) height += STRATA_TRY(laid(row, kTableText, "TD")).height();
+    if (!table_.total.empty()) height += STRATA_TRY(laid(table_.total, kTableTotal, "TD")).height();
+    return height <= pages_.height() / 3 ? height : least;
   }
 
   Result<void> draw(const Progress& progress) {
@@ -107,8 +114,8 @@ class TableFlow {
     double x = pages_.left();
     for (std::size_t i = 0; i < table_.columns.size(); ++i) {
       const Cell& cell = i < cells.size() ? cells[i] : kEmpty;
-      const double padding = points(kCellPadding_mm);
-      const double inner_width = points(widths_mm_[i]) - 2 * padding;
+      const double padding = has_rules_ ? points(kCellPadding_mm) : 0;
+      const double inner_width = points(widths_mm_[i] - 2 * kCellPadding_mm);
       const double indent = cell.swatch ? points(kSwatchWidth_mm) + kSwatchGap : 0;
       LaidCell laid{PdfText(pages_.context(), {{cell.text}}, style, pages_.language(),
                             inner_width - indent, table_.columns[i].alignment),
@@ -217,6 +224,7 @@ class TableFlow {
   }
 
   void draw_rule(double thickness, const Color& color) {
+    if (!has_rules_) return;
     pages_.draw_rule(pages_.left(), pages_.y(), pages_.width(), thickness, color);
   }
 
@@ -225,6 +233,7 @@ class TableFlow {
   const Table& table_;
   const std::string& place_;
   const std::vector<double> widths_mm_;
+  const bool has_rules_;
   const PdfText caption_;
   bool repeats_head_ = false;
   bool is_page_new_ = false;  // the page has no row except the repeated first row

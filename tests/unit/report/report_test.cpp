@@ -250,6 +250,62 @@ TEST(Report, a_long_table_repeats_its_head_and_loses_no_row) {
   EXPECT_TRUE(body.select_node("//w:tr[1]/w:trPr/w:tblHeader"));
 }
 
+TEST(Report, a_short_table_stays_on_one_page) {
+  Document document;
+  constexpr int kTables = 40, kRows = 5;
+  const auto words = [](int table, int row) {
+    return "table" + std::to_string(table) + "row" + std::to_string(row) + ".";
+  };
+  for (int i = 0; i < kTables; ++i) {
+    Table table{{{"", 1}, {"", 2}}, {}};
+    for (int row = 0; row < kRows; ++row)
+      table.rows.push_back({Cell{"Width"}, Cell{words(i, row)}});
+    document.blocks.emplace_back(std::move(table));
+  }
+  const Folder folder;
+  Progress progress;
+  const fs::path pdf = folder.path / "short.pdf";
+  ASSERT_TRUE(write_pdf(document, pdf, progress));
+  std::istringstream pages(pdf_text(pdf));
+  std::string page;
+  int count = 0, complete = 0;
+  while (std::getline(pages, page, '\f')) {
+    ++count;
+    for (int i = 0; i < kTables; ++i)
+      if (page.find(words(i, 0)) != std::string::npos)
+        complete += page.find(words(i, kRows - 1)) != std::string::npos ? 1 : 0;
+  }
+  EXPECT_GT(count, 3);
+  EXPECT_EQ(complete, kTables);
+}
+
+TEST(Report, a_table_that_arranges_pictures_has_no_lines) {
+  Document document;
+  const CellPicture picture{png_of(40, 20), 30, "A crack"};
+  document.blocks.emplace_back(
+      Table{{{"", 1}, {"", 1}}, {{Cell{"Crack", {}, picture}, Cell{"Rim", {}, picture}}}});
+  document.blocks.emplace_back(
+      Table{{{"", 1}, {"", 1}}, {{Cell{"Crack", {}, picture}, Cell{"2 mm"}}}});
+  const Folder folder;
+  Progress progress;
+  const fs::path docx = folder.path / "pictures.docx", pdf = folder.path / "pictures.pdf";
+  ASSERT_TRUE(write_docx(document, docx, progress));
+  const auto body = xml_of(part_of(docx, "word/document.xml"));
+  std::vector<std::string> styles;
+  for (const auto& style : body.select_nodes("//w:tblStyle/@w:val"))
+    styles.emplace_back(style.attribute().value());
+  EXPECT_EQ(styles, (std::vector<std::string>{"PlainTable", "ReportTable"}));
+  const auto has_lines = [&](std::size_t block) {
+    Document one;
+    one.blocks.push_back(document.blocks[block]);
+    EXPECT_TRUE(write_pdf(one, pdf, progress));
+    // only lines reach the right margin of the text, in points
+    return output_of("pdftocairo -svg " + pdf.string() + " -").find(" 537.9") != std::string::npos;
+  };
+  EXPECT_FALSE(has_lines(0));
+  EXPECT_TRUE(has_lines(1));
+}
+
 // Random words, also hostile ones.
 std::string words_of(std::mt19937& random) {
   static const char* const kWords[] = {"a",
