@@ -5,9 +5,10 @@ import { defineConfig } from "vitepress";
 import { thirdPartyNotices } from "../../web-client/notices";
 import { titled } from "./titles";
 import { withoutInline } from "./without-inline";
-import { alignedByClass, linksWithinTheGuide } from "./markdown";
+import { alignedByClass, linksToPublicFiles, linksWithinTheGuide } from "./markdown";
 
 const file = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
+const base = "/guide/"; // the address at which the server serves the guide
 const classes = transformerStyleToClass({ classPrefix: "code-" });
 
 // The order of the pages in the side bar. The build fails if a page is missing in this list or in
@@ -71,7 +72,7 @@ export default defineConfig({
   lang: "en",
   title: "Strata",
   description: "GIS layers on the surface of 3D heritage models",
-  base: "/guide/",
+  base,
   head: [["link", { rel: "icon", href: "/favicon.svg", type: "image/svg+xml" }]],
   cleanUrls: true,
   // With this option, VitePress would add a style element, which the security policy forbids.
@@ -82,6 +83,7 @@ export default defineConfig({
     codeTransformers: [classes],
     config: (md) => {
       linksWithinTheGuide(md);
+      linksToPublicFiles(md, base);
       alignedByClass(md);
     },
   },

@@ -27,6 +27,22 @@ export function linksWithinTheGuide(md: MarkdownRenderer): void {
   });
 }
 
+/**
+ * Links to files in the folder public by their address in the guide. In the repository, these links
+ * are relative.
+ */
+export function linksToPublicFiles(md: MarkdownRenderer, base: string): void {
+  md.core.ruler.push("links-to-public-files", (state) => {
+    for (const { children } of state.tokens)
+      for (const token of children ?? []) {
+        const [, file] = /^(?:\.\.\/)+public\/(.+)$/.exec(token.attrGet("href") ?? "") ?? [];
+        if (!file) continue;
+        token.attrSet("href", `${base}${file}`);
+        token.attrSet("target", "_self"); // VitePress takes other links for links to pages
+      }
+  });
+}
+
 /** Aligns cells of tables with a class, because the security policy forbids style attributes. */
 export function alignedByClass(md: MarkdownRenderer): void {
   md.core.ruler.push("aligned-by-class", (state) => {

@@ -73,6 +73,8 @@ std::string_view media_type(const fs::path& file) {
       {".ico", "image/x-icon"},
       {".woff2", "font/woff2"},
       {".wasm", "application/wasm"},
+      {".pdf", "application/pdf"},
+      {".docx", "application/vnd.openxmlformats-officedocument.wordprocessingml.document"},
       {".txt", "text/plain; charset=utf-8"}};
   auto found = types.find(to_lower(file.extension().string()));
   return found == types.end() ? "application/octet-stream" : found->second;

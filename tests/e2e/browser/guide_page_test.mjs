@@ -63,6 +63,19 @@ test("every page has an address, a title and its pictures", async ({ server, pag
   assert.deepEqual(foreign, []);
 });
 
+test("the sample of a condition report can be read", async ({ server, page }) => {
+  await page.goto(`${server.url}/guide/how-to/write-a-condition-report`);
+  for (const [name, type, begin] of [
+    ["as PDF/A", "application/pdf", "%PDF-"],
+    ["as DOCX", "officedocument.wordprocessingml.document", "PK"],
+  ]) {
+    const address = await page.getByRole("link", { name }).evaluate((link) => link.href);
+    const answer = await fetch(address);
+    assert.ok(answer.headers.get("Content-Type").endsWith(type), address);
+    assert.ok((await answer.text()).startsWith(begin), address);
+  }
+});
+
 test("axe has no serious finding", async ({ server, page }) => {
   for (const each of ["", "how-to/paint-a-layer", "reference/conditions"]) {
     await page.goto(`${server.url}/guide/${each}`);

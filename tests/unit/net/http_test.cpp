@@ -313,7 +313,9 @@ TEST(StaticFiles, serves_files_with_type_and_version) {
   const Folder folder;
   folder.write("index.html", "<p>page</p>");
   folder.write("assets/app-1a2b.js", "run()");
+  folder.write("guide/sample.pdf", "%PDF-1.7");
   const StaticFiles files(folder.path());
+  EXPECT_EQ(files.serve(parsed("/guide/sample.pdf")).header("Content-Type"), "application/pdf");
   const Response script = files.serve(parsed("/assets/app-1a2b.js"));
   EXPECT_EQ(script.header("Content-Type"), "text/javascript; charset=utf-8");
   EXPECT_NE(script.header("Cache-Control").find("immutable"), std::string_view::npos);
