@@ -272,6 +272,11 @@ class Parser : private TokenReader {
         default: break;
       }
     }
+    if (is("buffer") && names_ == Names::layers)
+      return refuse_part(
+          "There is no function 'buffer'. Use within(condition, distance), which is true up to this "
+          "distance",
+          position(token().at, token_end()), mistake::kUnknownFunction, {"within"});
     return refuse_part("There is no function '" + token().text +
                            "'. Available are valid, if, reclass, " +
                            names_of(Form::number_function) + ", " + names_of(Form::text_function) +
@@ -450,6 +455,10 @@ class Parser : private TokenReader {
   }
 
   double limit(const NamedSurfaceFunction& named) {
+    if (is("-")) {
+      refuse("The " + std::string(named.limit_name) + " must not be negative");
+      return 0;
+    }
     if (token().kind != Token::Kind::number) {
       refuse("Write the " + std::string(named.limit_name) + " as a number, such as 20");
       return 0;

@@ -38,7 +38,7 @@ class TokenReader {
   bool take(std::string_view text);      // advances if `is(text)`
   void expect(std::string_view text);    // refuses the token if it is another one
   bool is_call() const;                  // a word before "("
-  const Operator* operator_here(Operator::Form form) const;  // null if there is none
+  const Operator* operator_here(Operator::Form form) const;  // null: no such operator
 
   // Reports an error at byte `at`, by default at the token.
   void report(const std::string& what, std::optional<std::size_t> at, std::string_view reason);

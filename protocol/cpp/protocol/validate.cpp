@@ -166,7 +166,13 @@ std::string expectation(const json& schema) {
       return "a UUID such as 123e4567-e89b-42d3-a456-426614174000";
     std::string text = "a text of " + std::to_string(node.value("minLength", 0)) + " to " +
                        number(node["maxLength"]) + " characters";
-    if (node.contains("pattern")) text += " like " + node["pattern"].get<std::string>();
+    if (node.contains("examples")) {
+      text = "a text such as ";
+      for (const auto& example : node["examples"])
+        text += (text.ends_with("such as ") ? "" : " or ") + example.get<std::string>();
+    } else if (node.contains("pattern")) {
+      text += " like " + node["pattern"].get<std::string>();
+    }
     return text;
   }
   if (type == "array") {

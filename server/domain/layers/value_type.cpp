@@ -8,6 +8,8 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include "core/text/number_text.h"
+
 namespace strata {
 namespace {
 
@@ -17,6 +19,10 @@ struct Traits {
   double lowest, highest;
   bool floating;
 };
+
+std::string limit_text(const Traits& t, double limit) {
+  return t.floating ? short_number(limit) : std::to_string(static_cast<std::int64_t>(limit));
+}
 
 constexpr std::array<Traits, 8> kTraits{{
     {"u8", 1, 0, 255, false},
@@ -61,7 +67,7 @@ Result<std::uint32_t> encode_value(ValueType type, double value) {
     return fail(
         ErrorCode::invalid, "Value out of range",
         "This layer can store only values of type " + std::string(t.name) + ", from " +
-            std::to_string(t.lowest) + " to " + std::to_string(t.highest) + "." +
+            limit_text(t, t.lowest) + " to " + limit_text(t, t.highest) + "." +
             (widens_to(type, ValueType::u32) && value > 0
                  ? " To store larger values, change the type of the layer (PATCH {\"type\": \"u32\"})."
                  : ""),

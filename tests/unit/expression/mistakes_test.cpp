@@ -55,6 +55,7 @@ TEST(Mistakes, in_names_of_functions_are_corrected) {
   expect_refused({"wet > 1 and vaild(cracks)", kUnknownFunction, 12, 5, {"valid"}});
   expect_refused({"t_befor(a.b, '1560')", kUnknownFunction, 0, 7, {"t_before"}});
   expect_refused({"temperature(wet) > 1", kUnknownFunction, 0, 11});
+  expect_refused({"buffer(cracks, 5)", kUnknownFunction, 0, 6, {"within"}});
 }
 
 TEST(Mistakes, in_words_between_conditions_are_corrected) {

@@ -173,7 +173,7 @@ TEST(SurfaceFunctions, are_refused_with_the_reason_and_the_place) {
   for (const Mistaken& each : std::vector<Mistaken>{
            {"distance(wet + 1)", kExpectsCondition, 9},
            {"distance(wet > 1, dry)", kSyntax, 18, 0, "as a number"},
-           {"distance(wet > 1, -5)", kSyntax, 18, 0, "as a number"},
+           {"distance(wet > 1, -5)", kSyntax, 18, 0, "must not be negative"},
            {"distance(wet > 1, 5 mm)", kUnit, 18, 4, "unit of the model"},
            {"distance(wet > 1, 5mm)", kUnit, 18, 3},
            {"distance(wet > 1, 5 adn 6)", kSyntax, 20},

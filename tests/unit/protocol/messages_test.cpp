@@ -225,6 +225,15 @@ TEST(ProtocolMessages, beside_a_long_list_all_else_is_held_to_the_schema) {
   EXPECT_EQ(field_of(request), "points");
 }
 
+TEST(ProtocolMessages, a_text_of_the_wrong_form_is_refused_with_examples) {
+  const auto read = from_json<ModelPatch>(json{{"survey_date", "31.12.2020"}});
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().field, "survey_date");
+  EXPECT_NE(read.error().detail.find("a text such as 2019 or 2019-05 or 2019-05-01"),
+            std::string::npos)
+      << read.error().detail;
+}
+
 TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_built) {
   std::string points;
   for (int i = 0; i <= 100'000; ++i) points += "[1,2,3],";

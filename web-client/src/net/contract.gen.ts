@@ -2701,7 +2701,10 @@ export interface components {
         Axis: wire.Axis;
         /** Background of an image */
         Background: wire.Background;
-        /** sRGB color as #rrggbb */
+        /**
+         * sRGB color as #rrggbb
+         * @example #d04020
+         */
         BackgroundColor: wire.BackgroundColor;
         /** Deleted item that can be restored */
         BinEntry: wire.BinEntry;
@@ -3018,7 +3021,10 @@ export interface components {
         Person: wire.Person;
         /** Display settings of a user for the layers of a model */
         PersonalView: wire.PersonalView;
-        /** Color of a user */
+        /**
+         * Color of a user
+         * @example #d04020
+         */
         PersonColor: wire.PersonColor;
         /** New user account */
         PersonCreate: wire.PersonCreate;
@@ -3292,7 +3298,12 @@ export interface components {
         Survey: wire.Survey;
         /** Area of a class in a survey */
         SurveyClass: wire.SurveyClass;
-        /** Date of a survey */
+        /**
+         * Date of a survey
+         * @example 2019
+         * @example 2019-05
+         * @example 2019-05-01
+         */
         SurveyDate: wire.SurveyDate;
         /** Object with its surveys */
         SurveyedObject: wire.SurveyedObject;

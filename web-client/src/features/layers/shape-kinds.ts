@@ -211,13 +211,20 @@ const kDaysOfMonth = [31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31] as const;
 const twoDigits = (number: number): string => String(number).padStart(2, "0");
 
 /**
- * Returns the models that this one can be compared with. The models of this model's project are
- * first.
+ * Returns the models that this one can be compared with. Surveys of the same object are first, the
+ * newest survey before this one at the top. The other models of this model's project follow.
  */
 export function otherModels(all: readonly Model[], model: Model): Model[] {
   const others = all.filter((other) => other.id !== model.id);
-  return [
-    ...others.filter((other) => other.project === model.project),
-    ...others.filter((other) => other.project !== model.project),
-  ];
+  const dateOf = (each: Model): string => each.survey_date ?? "";
+  const rank = (other: Model): number => {
+    if (model.object !== undefined && other.object === model.object)
+      return dateOf(other) < dateOf(model) ? 0 : 1;
+    return other.project === model.project ? 2 : 3;
+  };
+  return others.sort((a, b) => {
+    const ranks = rank(a) - rank(b);
+    if (ranks !== 0 || rank(a) > 1) return ranks;
+    return dateOf(a) < dateOf(b) ? 1 : -1;
+  });
 }

@@ -158,6 +158,18 @@ describe("the other model", () => {
     const all = [model(1, "b"), model(2, "a"), model(3, "a")];
     expect(otherModels(all, all[1]!).map(({ id }) => id)).toEqual([3, 1]);
   });
+  it("is at first the survey before this one", () => {
+    const survey = (id: number, date: string): Model =>
+      ({ id, project: "a", object: 7, survey_date: date }) as unknown as Model;
+    const all = [
+      model(1, "a"),
+      survey(2, "2019"),
+      survey(3, "2021-05"),
+      survey(4, "2023"),
+      survey(5, "2020"),
+    ];
+    expect(otherModels(all, all[2]!).map(({ id }) => id)).toEqual([5, 2, 4, 1]);
+  });
   it("is first thought to differ by a 500th of the size", () => {
     const bounds: Model["bounds"] = { min: [0, 0, 0], max: [3, 4, 0] };
     expect(likelyToleranceMm({ bounds, unit: "m" })).toBe(10);
