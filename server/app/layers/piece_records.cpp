@@ -49,12 +49,15 @@ struct FoundPieces {
   std::vector<query::LineMeasures> lines;
 };
 
-Result<void> measure_as_lines(const Services& services, room::Room& room,
-                              const RegionSource& source, FoundPieces& found, Progress& progress) {
+Result<void> put_in_reading_order(const room::Room& room, query::Pieces& pieces,
+                                  const Progress& progress) {
   std::vector<glm::dvec3> centers;
-  for (const query::Piece& piece : found.pieces.list) centers.push_back(piece.center);
-  const auto order = query::reading_order(centers, up_frame(room.model().up));
-  STRATA_TRY(query::reorder(found.pieces, order, progress));
+  for (const query::Piece& piece : pieces.list) centers.push_back(piece.center);
+  return query::reorder(pieces, query::reading_order(centers, up_frame(room.model().up)), progress);
+}
+
+Result<void> measure_as_lines(const Services& services, const RegionSource& source,
+                              FoundPieces& found, Progress& progress) {
   const auto memory = STRATA_TRY(reserve_distances(services, *source.graph));
   progress.begin_stage(0.4, 0.8);
   found.lines = STRATA_TRY(query::measure_lines(found.pieces, *source.map, *source.graph, progress,
@@ -74,8 +77,9 @@ Result<FoundPieces> found_pieces(const Services& services, room::Room& room,
   progress.begin_stage(0.05, request.as_lines ? 0.4 : 0.8);
   found.pieces = STRATA_TRY(query::find_pieces(source.values(), pieces, *source.map, *source.graph,
                                                progress, mesh::background_threads()));
+  if (request.in_reading_order) STRATA_TRY(put_in_reading_order(room, found.pieces, progress));
   if (request.as_lines && with_measures)
-    STRATA_TRY(measure_as_lines(services, room, source, found, progress));
+    STRATA_TRY(measure_as_lines(services, source, found, progress));
   return found;
 }
 

@@ -13,8 +13,9 @@ struct PieceRecords {
   std::optional<std::uint32_t> of_bits{};  // value of the pieces; empty: all values
   double min_area_m2 = 0;
   // Measures the pieces as lines (query/regions/center_lines.h). Texels that touch at corners are
-  // then one piece, and the pieces are in reading order (query/regions/reading_order.h).
+  // then one piece.
   bool as_lines = false;
+  bool in_reading_order = false;  // query/regions/reading_order.h; otherwise the largest first
   // Columns of the table for the number of the piece, its area in cm² and its perimeter in mm.
   std::optional<ColumnId> number{}, area_cm2{}, perimeter_mm{};
   // Columns for the measures of lines in mm.

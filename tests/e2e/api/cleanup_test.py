@@ -249,6 +249,25 @@ def test_each_piece_becomes_a_record(server):
     assert value_at(server, "losses", 75, 30) == report["keys"][1]
 
 
+def test_pieces_are_numbered_in_reading_order_on_request(server):
+    """Three stones: the largest one is at the bottom, and the smallest one at the top left."""
+    stones = (
+        "case when y > 70 and x < 20 then 1 when y > 70 and x > 60 and x < 90 then 2 "
+        "when y < 50 then 3 end"
+    )
+    body = {"name": "Stones", "expression": stones, "resolution": 2048, "type": "u8"}
+    server.ok("POST", M + "/layers", body)
+    columns = [{"name": "Number", "kind": "integer"}]
+    body = {"name": "Blocks", "kind": "database", "type": "u8", "resolution": 2048}
+    server.ok("POST", M + "/layers", {**body, "columns": columns})
+    path, body = M + "/layers/stones/piece-records", {"into": "blocks", "number_column": "number"}
+    for wish, numbers in (({}, [3, 2, 1]), ({"in_reading_order": True}, [1, 2, 3])):
+        run(server, path, {**body, **wish})
+        keys = [int(value_at(server, "blocks", x, y)) for x, y in ((10, 80), (75, 80), (50, 20))]
+        found = [server.get(f"/tables/blocks/records/{key}").json()["values"] for key in keys]
+        assert [values["number"] for values in found] == numbers, wish
+
+
 def test_cracks_become_records_with_length_and_width_in_reading_order(server):
     lines = (
         "(y between 79.8 and 80.2 and x between 20 and 80) or "

@@ -2229,13 +2229,15 @@ export interface PieceRecords {
   of?: number;
   /** Smaller pieces get no record. Default: 0. */
   min_area_cm2?: number;
-  /** Slug of a column for the number of the piece, from 1. The largest piece is 1. With `as_lines`, the numbers are in reading order. */
+  /** Slug of a column for the number of the piece, from 1. The largest piece is 1, unless the numbers are in reading order. */
   number_column?: string;
+  /** Creates and numbers the records in reading order: in ten rows from top to bottom of the front view, and from left to right in each row. Always so with `as_lines`. Default: false. */
+  in_reading_order?: boolean;
   /** Slug of a column for the area in cm². */
   area_column?: string;
   /** Slug of a column for the perimeter in mm. */
   perimeter_column?: string;
-  /** Measures the pieces as lines, such as cracks. Texels that touch only at corners are then one piece. The numbers are in reading order: in ten rows from top to bottom of the front view, and from left to right in each row. Default: false. */
+  /** Measures the pieces as lines, such as cracks. Texels that touch only at corners are then one piece. Default: false. */
   as_lines?: boolean;
   /** With `as_lines`: slug of a column for the length in mm of the center line with its branches, up to the ends of the piece. */
   length_column?: string;

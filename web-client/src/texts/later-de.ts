@@ -790,6 +790,9 @@ export const laterTexts = {
     number_column: "Spalte für die Nummer",
     area_column: "Spalte für die Fläche in cm²",
     perimeter_column: "Spalte für den Umfang in mm",
+    in_reading_order: "Nummern von oben nach unten",
+    in_reading_order_hint:
+      "Etwa für Steine: in Reihen von oben nach unten und von links nach rechts. Sonst hat das größte Stück die Nummer 1.",
     as_lines: "Als Linien messen, etwa Risse",
     as_lines_hint:
       "Länge und Breite folgen der Mittellinie. Die Nummern laufen von oben nach unten und von links nach rechts.",

@@ -782,6 +782,9 @@ export const laterTexts = {
     number_column: "Column for the number",
     area_column: "Column for the area in cm²",
     perimeter_column: "Column for the perimeter in mm",
+    in_reading_order: "Numbers from top to bottom",
+    in_reading_order_hint:
+      "Such as stones: in rows from top to bottom, and from left to right. Otherwise the largest piece has the number 1.",
     as_lines: "Measure as lines, such as cracks",
     as_lines_hint:
       "Length and width follow the center line. The numbers run from top to bottom and from left to right.",

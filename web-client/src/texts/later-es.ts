@@ -788,6 +788,9 @@ export const laterTexts = {
     number_column: "Columna para el número",
     area_column: "Columna para el área en cm²",
     perimeter_column: "Columna para el perímetro en mm",
+    in_reading_order: "Números de arriba abajo",
+    in_reading_order_hint:
+      "Por ejemplo para piedras: en filas de arriba abajo y de izquierda a derecha. Si no, la pieza más grande tiene el número 1.",
     as_lines: "Medir como líneas, por ejemplo grietas",
     as_lines_hint:
       "La longitud y el ancho siguen la línea central. Los números van de arriba abajo y de izquierda a derecha.",

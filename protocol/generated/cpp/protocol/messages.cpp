@@ -3055,6 +3055,7 @@ void read(const nlohmann::json& json, PieceRecords& value) {
   read_optional_member(json, "of", value.of);
   read_optional_member(json, "min_area_cm2", value.min_area_cm2);
   read_optional_member(json, "number_column", value.number_column);
+  read_optional_member(json, "in_reading_order", value.in_reading_order);
   read_optional_member(json, "area_column", value.area_column);
   read_optional_member(json, "perimeter_column", value.perimeter_column);
   read_optional_member(json, "as_lines", value.as_lines);
@@ -3070,6 +3071,7 @@ nlohmann::json to_json(const PieceRecords& value) {
   write_optional_member(json, "of", value.of);
   write_member(json, "min_area_cm2", value.min_area_cm2);
   write_optional_member(json, "number_column", value.number_column);
+  write_member(json, "in_reading_order", value.in_reading_order);
   write_optional_member(json, "area_column", value.area_column);
   write_optional_member(json, "perimeter_column", value.perimeter_column);
   write_member(json, "as_lines", value.as_lines);

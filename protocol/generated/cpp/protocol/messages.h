@@ -2239,14 +2239,16 @@ struct PieceRecords {
   LayerRef into;
   std::optional<double> of;  // The value of the pieces. Default: all values.
   double min_area_cm2 = 0;  // Smaller pieces get no record.
-  // Slug of a column for the number of the piece, from 1. The largest piece is 1. With `as_lines`,
-  // the numbers are in reading order.
+  // Slug of a column for the number of the piece, from 1. The largest piece is 1, unless the
+  // numbers are in reading order.
   std::optional<std::string> number_column;
+  // Creates and numbers the records in reading order: in ten rows from top to bottom of the front
+  // view, and from left to right in each row. Always so with `as_lines`.
+  bool in_reading_order = false;
   std::optional<std::string> area_column;  // Slug of a column for the area in cm².
   std::optional<std::string> perimeter_column;  // Slug of a column for the perimeter in mm.
   // Measures the pieces as lines, such as cracks. Texels that touch only at corners are then one
-  // piece. The numbers are in reading order: in ten rows from top to bottom of the front view, and
-  // from left to right in each row.
+  // piece.
   bool as_lines = false;
   // With `as_lines`: slug of a column for the length in mm of the center line with its branches, up
   // to the ends of the piece.

@@ -157,6 +157,7 @@ Result<app::PieceRecords> pieces_of(const RouteContext& context, const room::Roo
   pieces.into = into.id;
   pieces.min_area_m2 = body.min_area_cm2 / 1e4;
   pieces.as_lines = body.as_lines;
+  pieces.in_reading_order = body.in_reading_order || body.as_lines;
   if (body.of) {
     const auto bits = STRATA_TRY(bits_of(layer, *body.of, "of"));
     pieces.of_bits = bits;

@@ -81,6 +81,8 @@ export interface PiecesInput {
   number: string;
   area: string;
   perimeter: string;
+  /** Without `asLines`, the largest piece has the number 1 otherwise. */
+  inReadingOrder: boolean;
   /** Measures the pieces as lines. Only then do the next columns count. */
   asLines: boolean;
   length: string;
@@ -110,7 +112,7 @@ export function piecesOf(input: PiecesInput, apply: boolean): PieceRecords | Ref
     ...(input.number ? { number_column: input.number } : {}),
     ...(input.area ? { area_column: input.area } : {}),
     ...(input.perimeter ? { perimeter_column: input.perimeter } : {}),
-    ...(input.asLines ? linesOf(input) : {}),
+    ...(input.asLines ? linesOf(input) : input.inReadingOrder ? { in_reading_order: true } : {}),
     apply,
   };
 }

@@ -1,7 +1,7 @@
 // <strata-pieces-dialog>: creates a record for each connected piece of a class. It is next to the
 // 3D view. A preview counts the pieces.
 
-import { html, LitElement, nothing, type TemplateResult } from "lit";
+import { html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import type { PieceRecords } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
@@ -38,6 +38,7 @@ export class StrataPiecesDialog extends LitElement {
     number: "",
     area: "",
     perimeter: "",
+    inReadingOrder: false,
     asLines: false,
     length: "",
     width: "",
@@ -100,7 +101,15 @@ export class StrataPiecesDialog extends LitElement {
         ${words.as_lines}
       </label>
       <p class="hint">${words.as_lines_hint}</p>
-      ${this._input.asLines ? this.lineColumns(target) : nothing}`;
+      ${this._input.asLines ? this.lineColumns(target) : this.order()}`;
+  }
+
+  private order(): TemplateResult {
+    return html`<label class="check">
+        <input type="checkbox" name="in_reading_order" .checked=${this._input.inReadingOrder} @change=${(event: Event) => this.change({ inReadingOrder: (event.target as HTMLInputElement).checked })} />
+        ${words.in_reading_order}
+      </label>
+      <p class="hint">${words.in_reading_order_hint}</p>`;
   }
 
   private lineColumns(target: Layer): TemplateResult {

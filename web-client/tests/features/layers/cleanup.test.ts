@@ -106,6 +106,7 @@ describe("the request for records of pieces", () => {
     number: "",
     area: "",
     perimeter: "",
+    inReadingOrder: false,
     asLines: false,
     length: "",
     width: "",
@@ -124,6 +125,11 @@ describe("the request for records of pieces", () => {
       },
     );
     expect(piecesOf({ ...pieces, minArea: "-1" }, true)).toMatchObject({ field: "min_area_cm2" });
+  });
+  it("asks for reading order, which lines always have", () => {
+    const inOrder = { ...pieces, inReadingOrder: true };
+    expect(piecesOf(inOrder, true)).toEqual({ into: 5, in_reading_order: true, apply: true });
+    expect(piecesOf({ ...inOrder, asLines: true }, true)).not.toHaveProperty("in_reading_order");
   });
   it("measures lines only if they are chosen", () => {
     const columns = { ...pieces, length: "l", greatestWidth: "g" };
