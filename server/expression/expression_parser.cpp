@@ -456,7 +456,8 @@ class Parser : private TokenReader {
 
   double limit(const NamedSurfaceFunction& named) {
     if (is("-")) {
-      refuse("The " + std::string(named.limit_name) + " must not be negative");
+      refuse("The " + std::string(named.limit_name) +
+             " must not be negative. Write a number such as 20");
       return 0;
     }
     if (token().kind != Token::Kind::number) {

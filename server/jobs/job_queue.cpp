@@ -148,12 +148,9 @@ JobStatus snapshot(const Job& job) {
   return status;
 }
 
-bool needs_most_memory(JobKind kind) { return kind == JobKind::import || kind == JobKind::image; }
-
-// Returns whether a job must not begin before the end of a running job.
-bool must_wait_for(const JobStatus& job, const JobStatus& running) {
-  return (needs_most_memory(job.kind) && needs_most_memory(running.kind)) ||
-         (job.user == running.user && job.kind == running.kind);
+// Returns whether one of two jobs must not begin before the end of the other one.
+bool exclude_each_other(const JobStatus& a, const JobStatus& b) {
+  return (a.kind == JobKind::figure) == (b.kind == JobKind::figure);
 }
 
 Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
@@ -267,7 +264,7 @@ struct JobQueue::Impl {
   std::deque<JobId>::iterator next() {
     return std::ranges::find_if(waiting, [this](JobId id) {
       return std::ranges::none_of(running, [&](JobId other) {
-        return must_wait_for(jobs.at(id).status, jobs.at(other).status);
+        return exclude_each_other(jobs.at(id).status, jobs.at(other).status);
       });
     });
   }
@@ -314,6 +311,7 @@ JobQueue::JobQueue(store::Jobs* store, std::optional<Uuid> node) : impl_(std::ma
   impl_->store = store;
   impl_->node = node;
   impl_->take_over();
+  constexpr int kWorkers = 2;  // one of them makes files
   for (int i = 0; i < kWorkers; ++i)
     impl_->workers.emplace_back([impl = impl_.get()] { impl->work_on_jobs(); });
 }

@@ -49,16 +49,14 @@ struct JobStatus {
   std::optional<JobResult> result;
 };
 
-// Runs long work on separate threads, at most kWorkers jobs at a time, in the order of the
-// requests. Only one import or picture runs at a time, because it can need most of the memory. Jobs
-// of one user and one kind also run one after the other, so a long job does not keep the jobs of
-// other users waiting. Until the queue is destroyed, it keeps the newest 1000 finished jobs, and
-// the files of the newest kFilesKept jobs with a file. Ids are higher than the ids of all earlier
-// queues, so an old id never refers to a new job.
+// Runs long work on separate threads, one job at a time in the order of the requests, because a job
+// can need most of the memory. Only files (JobKind::figure), which need little memory, are also
+// made during other jobs, one file at a time. Until the queue is destroyed, it keeps the newest
+// 1000 finished jobs, and the files of the newest kFilesKept jobs with a file. Ids are higher than
+// the ids of all earlier queues, so an old id never refers to a new job.
 class JobQueue {
  public:
   static constexpr int kFilesKept = 16;
-  static constexpr int kWorkers = 2;
   // With `store`, jobs are kept for store::Jobs::kDaysKept days, also after the queue is destroyed,
   // but without their files. Unfinished jobs of an earlier queue are reported as failed. `store`
   // must outlive the queue. `node` is this server, if the site has several servers. Blocks.

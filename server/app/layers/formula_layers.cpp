@@ -175,12 +175,16 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
   // Reads the sequences before the records. If the records change later, the layer is then out of
   // date.
   const auto tables = STRATA_TRY(services.store.layers().table_sequences_of(layer.id));
+  const Model before = room->model();
   auto formula = STRATA_TRY(prepare(services, *room, layer, author, progress));
   if (progress.cancelled()) return cancelled_problem();
   room::EditRequest edit{random_uuid(), author, layer.id};
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
   edit.edit = room::ComputeEdit{formula.expression, std::move(formula.views), overwrites};
   const auto done = STRATA_TRY(edit_and_wait(*room, std::move(edit), services.edits));
+  // The layer stays stale if its values have become wrong in the meantime (Models::update).
+  if (const Model now = room->model(); now.unit != before.unit || now.up != before.up)
+    return room->layers().find(to_string(layer.id));
   return room->layers().mark_computed(layer.id, layer.formula->expression,
                                       computed_sequence(formula, done), tables);
 }

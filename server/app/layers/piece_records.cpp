@@ -77,9 +77,9 @@ Result<FoundPieces> found_pieces(const Services& services, room::Room& room,
   progress.begin_stage(0.05, request.as_lines ? 0.4 : 0.8);
   found.pieces = STRATA_TRY(query::find_pieces(source.values(), pieces, *source.map, *source.graph,
                                                progress, mesh::background_threads()));
+  if (!with_measures) return found;
   if (request.in_reading_order) STRATA_TRY(put_in_reading_order(room, found.pieces, progress));
-  if (request.as_lines && with_measures)
-    STRATA_TRY(measure_as_lines(services, source, found, progress));
+  if (request.as_lines) STRATA_TRY(measure_as_lines(services, source, found, progress));
   return found;
 }
 

@@ -51,7 +51,7 @@ struct ReportRequest {
   std::vector<Section> sections{};
   std::vector<Layer> layers{};   // from bottom to top
   room::PictureRequest shown{};  // contains the sequence that the whole report shows
-  std::map<TableId, std::int64_t> records_at{};  // the sequences of the layers' tables
+  std::map<TableId, std::int64_t> records_at{};  // the sequences of all layers' tables
   std::vector<MeasuredFigure> figures{};
   std::size_t max_records = 100;  // of each layer
   bool record_pictures = true;    // draw the place of each record

@@ -52,7 +52,7 @@ Result<RecordNames> labels_of(const ReportContext& context, const Layer& layer) 
   if (places.size() > kMaxKeys) return RecordNames{};
   std::vector<std::int64_t> keys;
   for (const auto& [key, place] : places) keys.push_back(key);
-  const auto at = STRATA_TRY(records_at(context, layer));
+  const auto at = records_at(context, layer);
   const auto names =
       STRATA_TRY(record_names(context.services.store, *layer.table, context.request.reader.role,
                               keys, at, context.words.tag));

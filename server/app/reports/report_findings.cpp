@@ -93,9 +93,9 @@ Result<report::CellPicture> stored(const ReportContext& context,
   return report::CellPicture{file->path, kPlaceWidth_mm, name};
 }
 
-// Returns a small version of a picture, or nullopt if the file is too large or cannot be read.
-std::optional<std::vector<std::uint8_t>> small_version(store::Attachments& attachments,
-                                                       const Attachment& file) {
+// Returns a small version of a picture, or nullopt if the file is too large or no picture.
+Result<std::optional<std::vector<std::uint8_t>>> small_version(store::Attachments& attachments,
+                                                               const Attachment& file) {
   if (file.bytes > kMaxPictureBytes) return std::nullopt;
   std::vector<std::uint8_t> bytes;
   const auto read =
@@ -103,7 +103,8 @@ std::optional<std::vector<std::uint8_t>> small_version(store::Attachments& attac
         bytes.insert(bytes.end(), part.begin(), part.end());
         return true;
       });
-  if (!read) return std::nullopt;
+  if (!read && read.error().code == ErrorCode::not_found) return std::nullopt;
+  if (!read) return tl::unexpected(read.error());
   auto small = make_thumbnail(bytes, kPictureSide);
   if (!small) return std::nullopt;
   return std::move(*small);
@@ -129,7 +130,8 @@ Result<std::vector<report::Cell>> pictures_of(const ReportContext& context,
     if (cells.size() == kMaxPictures) break;
     if (file == found.end()) continue;
     report::Cell& cell = cells.emplace_back(report::Cell{file->name});
-    if (const auto small = small_version(attachments, *file)) {
+    const auto small = STRATA_TRY(small_version(attachments, *file));
+    if (small) {
       auto picture = STRATA_TRY(stored(context, *small, file->name));
       cell.picture = std::move(picture);
     } else {
@@ -186,7 +188,7 @@ Result<std::size_t> add_layer(const ReportContext& context, const Layer& layer, 
   query.keys.emplace();
   for (const auto& [key, place] : findings.places) query.keys->push_back(key);
   if (query.keys->empty()) return 0;
-  auto at = STRATA_TRY(records_at(context, layer));
+  const auto at = records_at(context, layer);
   query.at = at;
   auto page = STRATA_TRY(store.records().page(*layer.table, request.reader.role, query));
   findings.page = std::move(page);

@@ -2,7 +2,6 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,7 +38,7 @@ Blocks provenance_part(const ReportContext& context);
 
 // The memory of the largest drawing.
 std::uint64_t drawing_bytes();
-// Draws the surface around a record, `bounds` in world coordinates. Returns a PNG that is
+// Draws the surface around a record, with its lines and points. Returns a PNG that is
 // kPlaceWidth_mm wide, or null if there is no surface near the record.
 inline constexpr double kPlaceWidth_mm = 78;
 Result<std::shared_ptr<const TemporaryFile>> place_picture(const ReportContext& context,
@@ -47,9 +46,8 @@ Result<std::shared_ptr<const TemporaryFile>> place_picture(const ReportContext& 
                                                            const query::KeyArea& place,
                                                            Progress& progress);
 
-// Returns the sequence of the layer's table that the report shows, or nullopt for the current
-// state, which is faster to read.
-Result<std::optional<std::int64_t>> records_at(const ReportContext& context, const Layer& layer);
+// Returns the sequence of the layer's table that the report shows.
+std::int64_t records_at(const ReportContext& context, const Layer& layer);
 // Returns the areas of the records that are painted on a layer or that have lines or points on its
 // model. The boxes include the lines and points.
 Result<std::map<std::int64_t, query::KeyArea>> record_places(const ReportContext& context,

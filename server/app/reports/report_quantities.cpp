@@ -64,7 +64,7 @@ Result<OfLayer> quantities_of(const ReportContext& context, const Layer& layer) 
   if (!layer.table) return found;
   store::Store& store = context.services.store;
   const auto table = STRATA_TRY(store.tables().find(to_string(*layer.table), request.reader.role));
-  const auto at = STRATA_TRY(records_at(context, layer));
+  const auto at = records_at(context, layer);
   auto features = STRATA_TRY(FeatureMeasures::of_table(context.services, table, request.reader.role,
                                                        request.room->model(), at));
   found.features = std::move(features);

@@ -5,22 +5,18 @@
 #include "room/room.h"
 #include "store/store.h"
 #include "store/tables/records.h"
-#include "store/tables/tables.h"
 
 namespace strata::app {
 
-Result<std::optional<std::int64_t>> records_at(const ReportContext& context, const Layer& layer) {
-  const auto shown = context.request.records_at.at(*layer.table);
-  const auto table =
-      STRATA_TRY(context.services.store.tables().find(to_string(*layer.table), Role::owner));
-  return table.sequence == shown ? std::nullopt : std::optional(shown);
+std::int64_t records_at(const ReportContext& context, const Layer& layer) {
+  return context.request.records_at.at(*layer.table);
 }
 
 Result<std::map<std::int64_t, query::KeyArea>> record_places(const ReportContext& context,
                                                              const Layer& layer) {
   const ReportRequest& request = context.request;
   auto places = STRATA_TRY(request.room->queries().key_areas(layer.slug, request.shown.at));
-  const auto at = STRATA_TRY(records_at(context, layer));
+  const auto at = records_at(context, layer);
   const auto features = STRATA_TRY(context.services.store.records().features(
       *layer.table, request.reader.role, request.room->model().id, at));
   for (const auto& [key, feature] : features) {

@@ -254,9 +254,11 @@ void OpenRoom::replace_model(const Model& stored,
     outdates_layers = stored.up != model_.up || stored.unit != model_.unit;
     if (stored.up != model_.up) contact_shadow_ = std::move(shadow);
     model_ = stored;
+    // As in Models::update.
+    for (auto& [id, state] : layers_)
+      if (outdates_layers && state.layer.formula) state.layer.formula->computed_sequence = 0;
   }
   participants_part_->tell([&](Listener& l) { l.model_changed(stored); });
-  // As in Models::update.
   if (outdates_layers) layers_part_->outdate([](const LayerFormula&) { return true; });
   participants_part_->styles_changed();  // the spacing of patterns is in millimeters
 }

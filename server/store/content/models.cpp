@@ -269,10 +269,13 @@ Result<Model> Models::update(Model m, const IdempotentResponse<Model>& answer) {
   STRATA_TRY(check_survey(m.object.has_value(), m.survey_date));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Model> {
     STRATA_TRY(check_object(connection, m));
-    // Computed layers can contain lengths, heights and slopes, so they are stale. Afterwards, the
-    // statement below checks the version.
+    // The order of locks is that of edits: the model, then its layers.
+    STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                                Params().id(m.id)));
+    // Computed layers can contain lengths, heights and slopes, so they are stale, also in the
+    // Trash. Afterwards, the statement below checks the version.
     STRATA_TRY(connection.query(
-        "UPDATE layers SET computed_sequence = 0 WHERE model_id = $1 AND expression IS NOT NULL AND EXISTS "
+        "UPDATE all_layers SET computed_sequence = 0 WHERE model_id = $1 AND expression IS NOT NULL AND EXISTS "
         "(SELECT 1 FROM models WHERE id = $1 AND version = $2 AND (unit, up) IS DISTINCT FROM ($3, $4))",
         Params().id(m.id).integer(m.version).text(name(m.unit)).text(m.up)));
     auto row = STRATA_TRY(connection.query(

@@ -525,7 +525,9 @@ def test_another_unit_or_upward_direction_makes_them_stale(server):
         assert server.wait_for_job(job)["state"] == "done"
 
     def is_stale(layer):
-        return server.get(f"{turned}/layers/{layer}").json()["stale"]
+        found = server.get(f"{turned}/layers/{layer}").json()
+        assert found["stale"] or found["computed_sequence"] > 0, found
+        return found["stale"]
 
     def mean(layer):
         return server.get(f"{turned}/layers/{layer}/statistics").json()["mean"]
@@ -535,6 +537,7 @@ def test_another_unit_or_upward_direction_makes_them_stale(server):
     assert not is_stale("steep")
     server.ok("PATCH", turned, {"up": "y"})
     assert is_stale("steep")
+    assert "computed_sequence" not in server.get(turned + "/layers/steep").json()
     wait_for(lambda: not is_stale("level"), "the automatic layer to be up to date")
     assert abs(mean("level") - before) > 10 and mean("steep") == before
     assert server.ok("POST", turned + "/layers/steep/compute", expect=(200, 202)).status

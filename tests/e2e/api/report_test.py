@@ -266,6 +266,9 @@ def test_a_saved_view_is_a_figure_with_its_layers(server):
     body = report(server, figures=figures, sections=[{"part": "figures"}]).body
     captions = [text for style, text in paragraphs(body) if style == "Caption"]
     assert captions == ["South side", "From above"], paragraphs(body)
+    # The view shows records of a layer that the report leaves out.
+    answer = report(server, figures=figures[:1], layers=["damage"])
+    assert headings(answer.body, 2) == ["Damage"] and len(pictures_mm(answer.body)) == 1
 
 
 def test_faulty_requests_name_the_field(server):

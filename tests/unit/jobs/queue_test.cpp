@@ -76,7 +76,7 @@ TEST(JobsQueue, a_job_that_throws_fails_and_the_next_one_runs) {
   EXPECT_EQ(wait_until_over(queue, *good).state, JobState::done);
 }
 
-TEST(JobsQueue, jobs_of_one_user_and_kind_run_one_at_a_time_in_the_order_of_asking) {
+TEST(JobsQueue, jobs_run_one_at_a_time_in_the_order_of_asking) {
   JobQueue queue;
   std::vector<int> order;
   std::atomic<int> running{0};
@@ -95,52 +95,23 @@ TEST(JobsQueue, jobs_of_one_user_and_kind_run_one_at_a_time_in_the_order_of_aski
   EXPECT_EQ(queue.all().front().id, last) << "newest first";
 }
 
-TEST(JobsQueue, a_long_job_does_not_stop_jobs_of_other_users_and_kinds) {
-  Gate gate;
+TEST(JobsQueue, files_are_made_during_other_jobs_one_at_a_time) {
+  Gate long_job, file;
   JobQueue queue;
-  queue.add(1, gate.work(), "ada", JobKind::layers);
-  gate.entered.get_future().wait();
   const auto quick = [](Progress&) -> Result<JobResult> { return ModelId(1); };
-  const auto same = queue.add(1, quick, "ada", JobKind::layers);
-  for (const auto& [user, kind] : {std::pair("ben", JobKind::layers), {"ada", JobKind::figure}})
-    EXPECT_EQ(wait_until_over(queue, *queue.add(1, quick, user, kind)).state, JobState::done);
-  EXPECT_EQ(queue.status(*same)->state, JobState::queued);
-  gate.opened.set_value();
-  EXPECT_EQ(wait_until_over(queue, *same).state, JobState::done);
-}
-
-TEST(JobsQueue, only_one_job_that_needs_most_of_the_memory_runs_at_a_time) {
-  Gate gate;
-  JobQueue queue;
-  queue.add(1, gate.work(), "ada", JobKind::import);
-  gate.entered.get_future().wait();
-  const auto quick = [](Progress&) -> Result<JobResult> { return ModelId(1); };
-  const auto waiting = queue.add(1, quick, "ben", JobKind::image);
-  const auto other = queue.add(1, quick, "ben", JobKind::figure);
-  EXPECT_EQ(wait_until_over(queue, *other).state, JobState::done) << "it overtakes the picture";
-  EXPECT_EQ(queue.status(*waiting)->state, JobState::queued);
-  gate.opened.set_value();
-  EXPECT_EQ(wait_until_over(queue, *waiting).state, JobState::done);
-}
-
-TEST(JobsQueue, no_more_jobs_run_at_a_time_than_there_are_workers) {
-  JobQueue queue;
-  std::atomic<int> running{0}, most{0};
-  std::vector<JobId> ids;
-  for (int i = 0; i < 50; ++i)
-    ids.push_back(*queue.add(
-        1,
-        [&](Progress&) -> Result<JobResult> {
-          const int now = ++running;
-          for (int before = most; before < now && !most.compare_exchange_weak(before, now);) {
-          }
-          std::this_thread::yield();
-          --running;
-          return ModelId(1);
-        },
-        "user " + std::to_string(i), JobKind::layers));
-  for (const JobId id : ids) EXPECT_EQ(wait_until_over(queue, id).state, JobState::done);
-  EXPECT_LE(most, JobQueue::kWorkers);
+  queue.add(1, long_job.work(), "ada", JobKind::layers);
+  const auto other = queue.add(1, quick, "ben", JobKind::changes);
+  queue.add(1, file.work(), "ada", JobKind::figure);
+  const auto second_file = queue.add(1, quick, "ben", JobKind::figure);
+  long_job.entered.get_future().wait();
+  file.entered.get_future().wait();
+  for (const auto& waiting : {other, second_file})
+    EXPECT_EQ(queue.status(*waiting)->state, JobState::queued);
+  file.opened.set_value();
+  EXPECT_EQ(wait_until_over(queue, *second_file).state, JobState::done);
+  EXPECT_EQ(queue.status(*other)->state, JobState::queued);
+  long_job.opened.set_value();
+  EXPECT_EQ(wait_until_over(queue, *other).state, JobState::done);
 }
 
 TEST(JobsQueue, progress_shows_while_a_job_runs) {

@@ -1,7 +1,7 @@
 // The job of a dialog that makes a file, and the dialog's footer with its progress and result.
 
-import { css, html, nothing, type ReactiveController, type ReactiveControllerHost } from "lit";
-import type { TemplateResult } from "lit";
+import { css, html, nothing } from "lit";
+import type { LitElement, ReactiveController, TemplateResult } from "lit";
 import { ApiError } from "../net/api-error";
 import type { ProblemBody } from "../core/types";
 import { styled } from "../ui/styled";
@@ -24,12 +24,15 @@ export interface FileFooter {
   problem: string;
 }
 
+const kActions = 'button[slot="actions"]';
+
 export class AwaitedFile implements ReactiveController {
   private _sending = false;
+  private _hadFocus = false;
 
   /** `refuse` shows the problem of a refused request or a failed job. */
   constructor(
-    private readonly _host: ReactiveControllerHost & { session: ModelSession },
+    private readonly _host: LitElement & { session: ModelSession },
     private readonly _refuse: (problem: ProblemBody) => void,
   ) {
     _host.addController(this);
@@ -59,7 +62,15 @@ export class AwaitedFile implements ReactiveController {
     void this._host.session.files.leave();
   }
 
+  /** Moves the focus from a button that has disappeared or cannot be pressed now. */
+  hostUpdated(): void {
+    const root = this._host.shadowRoot;
+    if (!root || !this._hadFocus || root.activeElement?.matches(":enabled")) return;
+    root.querySelector<HTMLElement>(`${kActions}:enabled`)?.focus();
+  }
+
   hostUpdate(): void {
+    this._hadFocus = this._host.shadowRoot?.activeElement?.matches(kActions) ?? false;
     const { files, jobs } = this._host.session;
     const { job } = this;
     if (!job?.problem) return;
@@ -98,23 +109,23 @@ export class AwaitedFile implements ReactiveController {
     const { form, make, making, cancel, saved, problem, actions = nothing, status } = footer;
     const { running, isFree } = this;
     const { saved: file } = this._host.session.files;
-    if (!running)
-      return html`<div slot="told" class="told ${problem || file || status ? "" : "nothing"}">
-          ${problem ? html`<span class="error" role="alert">${problem}</span>` : nothing}
-          <span class="hint" role="status">${problem || !file ? nothing : saved(file)} ${status}</span>
-        </div>
-        ${actions}
-        <button slot="actions" class="primary" form=${form} ?disabled=${!isFree}>${make}</button>`;
-    const { job } = running;
-    const percent = Math.round(job.progress * 100);
-    return html`<div slot="told" class="making">
-        <div class="bar" role="progressbar" aria-label=${making} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
-          <i ${styled({ width: `${percent}%` })}></i>
-        </div>
-        <span class="hint">${job.state === "queued" ? texts.layer_jobs.queued : job.message || making}</span>
+    const told = running ? "making" : problem || file || status ? "told" : "told nothing";
+    // The status is always in the page, because screen readers announce only its changes.
+    return html`<div slot="told" class=${told}>
+        ${running ? this.progress(running, making) : nothing}
+        ${problem && !running ? html`<span class="error" role="alert">${problem}</span>` : nothing}
+        <span class="hint" role="status">${running ? nothing : html`${problem || !file ? nothing : saved(file)} ${status}`}</span>
       </div>
-      <button slot="actions" @click=${() => void this.cancel(running)}>${cancel}</button>
-      <button slot="actions" class="primary" form=${form} disabled>${make}</button>`;
+      ${running ? html`<button slot="actions" @click=${() => void this.cancel(running)}>${cancel}</button>` : actions}
+      <button slot="actions" class="primary" form=${form} ?disabled=${!isFree}>${make}</button>`;
+  }
+
+  private progress({ job }: LayerJob, making: string): TemplateResult {
+    const percent = Math.round(job.progress * 100);
+    return html`<div class="bar" role="progressbar" aria-label=${making} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
+        <i ${styled({ width: `${percent}%` })}></i>
+      </div>
+      <span class="hint">${job.state === "queued" ? texts.layer_jobs.queued : job.message || making}</span>`;
   }
 }
 

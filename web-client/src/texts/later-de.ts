@@ -102,7 +102,7 @@ export const laterTexts = {
       condition: "Ihre Beschreibung. Ohne Text entfällt der Abschnitt.",
       figures: "Zeichnungen im Maßstab, mit einer Legende des Gezeigten.",
       quantities: "Die Legende jeder Ebene, mit Flächen und Stückzahlen.",
-      findings: "Jeder Datensatz, der auf einer Ebene gemalt ist, mit Werten, Flächen und Bildern.",
+      findings: "Jeder Datensatz mit Fläche, Linie oder Punkt, mit Werten, Flächen und Bildern.",
       measures: "Ihre Empfehlungen. Ohne Text entfällt der Abschnitt.",
       methods: "Die Auflösung jeder Ebene, und wie Ebenen berechnet wurden.",
       provenance: "Dateien des Scans, der Stand der Ebenen und die letzte Änderung jeder Ebene.",

@@ -100,7 +100,7 @@ export const laterTexts = {
       condition: "Your description. Without a text, the report omits the section.",
       figures: "Drawings to scale, with a legend of what they show.",
       quantities: "The legend of each layer, with areas and numbers of pieces.",
-      findings: "Each record that is painted on a layer, with its values, areas and pictures.",
+      findings: "Each record with an area, line or point, with its values, areas and pictures.",
       measures: "Your recommendations. Without a text, the report omits the section.",
       methods: "The resolution of each layer, and how layers were computed.",
       provenance: "Files of the scan, the state of the layers, and the last edit of each.",
@@ -121,7 +121,7 @@ export const laterTexts = {
     no_figures: "Without drawings, the report omits the section.",
     scale_of: (name: string) => `Scale of ${name}`,
     scale_hint: "Scale, such as 1 : 50. Empty: fits the page",
-    records: "Most records of each layer",
+    records: "Largest number of records of each layer",
     wrong_records: (least: number, most: string) =>
       `Enter a whole number from ${least} to ${most}.`,
     record_pictures: "Show the place of each record on the surface",

@@ -102,7 +102,7 @@ export const laterTexts = {
       condition: "Su descripción. Sin texto, el informe omite el apartado.",
       figures: "Dibujos a escala, con una leyenda de lo que muestran.",
       quantities: "La leyenda de cada capa, con áreas y número de piezas.",
-      findings: "Cada registro pintado en una capa, con sus valores, áreas e imágenes.",
+      findings: "Cada registro con área, línea o punto, con sus valores, áreas e imágenes.",
       measures: "Sus recomendaciones. Sin texto, el informe omite el apartado.",
       methods: "La resolución de cada capa y el cálculo de las capas.",
       provenance:

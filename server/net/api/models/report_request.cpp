@@ -148,6 +148,18 @@ Result<void> read_figures(const RouteContext& context, const Request& request,
   return {};
 }
 
+// Sets the states of the tables that the report shows.
+Result<void> find_records_at(const RouteContext& context, const Request& request,
+                             const std::vector<Layer>& layers, ReportRequest& report) {
+  for (const Layer& layer : layers) {
+    if (!layer.table || report.records_at.contains(*layer.table)) continue;
+    const auto table =
+        STRATA_TRY(context.store.tables().find(to_string(*layer.table), request.role()));
+    report.records_at[table.id] = table.sequence;
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<ReportRequest> read_report_request(const RouteContext& context, const Request& request) {
@@ -176,13 +188,10 @@ Result<ReportRequest> read_report_request(const RouteContext& context, const Req
       STRATA_TRY(figure_request(context, request, report.room, with_layers(report)));
   report.shown = drawing.shown;
   report.layers = drawing.layers;  // from bottom to top
-  for (const Layer& layer : report.layers) {
-    if (!layer.table) continue;
-    const auto table =
-        STRATA_TRY(context.store.tables().find(to_string(*layer.table), request.role()));
-    report.records_at[table.id] = table.sequence;
-  }
   STRATA_TRY(read_figures(context, request, body, report));
+  STRATA_TRY(find_records_at(context, request, report.layers, report));
+  for (const auto& figure : report.figures)  // views have their own layers
+    STRATA_TRY(find_records_at(context, request, figure.request.layers, report));
   report.max_records = static_cast<std::size_t>(body.max_records);
   report.record_pictures = body.record_pictures;
   return report;

@@ -225,6 +225,6 @@ export function otherModels(all: readonly Model[], model: Model): Model[] {
   return others.sort((a, b) => {
     const ranks = rank(a) - rank(b);
     if (ranks !== 0 || rank(a) > 1) return ranks;
-    return dateOf(a) < dateOf(b) ? 1 : -1;
+    return dateOf(b).localeCompare(dateOf(a));
   });
 }
