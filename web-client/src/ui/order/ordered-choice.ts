@@ -39,11 +39,13 @@ export class StrataOrderedChoice extends LitElement {
     css`
       :host {
         display: grid;
+        grid-template-columns: minmax(0, 1fr); /* narrower than the longest name of a choice */
         gap: var(--space-2);
         min-width: 0;
       }
       ol {
         display: grid;
+        grid-template-columns: minmax(0, 1fr);
         gap: var(--space-1);
         margin: 0;
         padding: 0;
