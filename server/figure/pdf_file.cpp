@@ -2,6 +2,8 @@
 
 #include <cairo-pdf.h>
 
+#include <cstdio>
+
 namespace strata::figure {
 
 PdfFile::PdfFile(const std::filesystem::path& file, double width, double height)

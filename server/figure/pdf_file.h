@@ -1,9 +1,8 @@
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 
+#include "core/owned_file.h"
 #include "figure/cairo_owners.h"
 
 namespace strata::figure {
@@ -22,12 +21,9 @@ class PdfFile {
   bool finish();
 
  private:
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   static cairo_status_t write(void* pdf_file, const unsigned char* bytes, unsigned int count);
 
-  std::unique_ptr<std::FILE, CloseFile> file_;
+  OwnedFile file_;
   bool is_complete_ = false;
   CairoSurface surface_;  // destroyed first, because it writes the file
 };

@@ -5,6 +5,7 @@
 #include <cstdarg>
 #include <memory>
 
+#include "core/owned_file.h"
 #include "figure/sheet_rows.h"
 #include "figure/writers.h"
 #include "media/guarded_png.h"
@@ -12,9 +13,6 @@
 namespace strata::figure {
 namespace {
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 struct CloseTiff {
   void operator()(TIFF* tiff) const { TIFFClose(tiff); }
 };
@@ -31,7 +29,7 @@ int ignore_tiff(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi,
                        const Document& document, const std::filesystem::path& path,
                        Progress& progress) {
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "wb"));
+  const OwnedFile file(std::fopen(path.c_str(), "wb"));
   if (!file) return unwritable();
   const auto [width, height] = pixels_of(sheet, dpi);
   PngWriter writer;

@@ -12,6 +12,7 @@
 #include <qpdf/QPDFWriter.hh>
 #include <stdexcept>
 
+#include "core/owned_file.h"
 #include "report/time_text.h"
 #include "report/unwritable.h"
 #include "report/xml.h"
@@ -93,9 +94,6 @@ Object info(const Document& document) {
   return dictionary;
 }
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 struct CloseProfile {
   void operator()(void* profile) const { cmsCloseProfile(profile); }
 };
@@ -193,7 +191,7 @@ Result<void> write_archive(const std::filesystem::path& drawn, const std::filesy
   pdf.getTrailer().replaceKey("/Info", pdf.makeIndirectObject(info(document)));
 
   // QPDF ignores errors of its own files when it closes them, for example on a full disk.
-  std::unique_ptr<std::FILE, CloseFile> output(std::fopen(file.c_str(), "wb"));
+  OwnedFile output(std::fopen(file.c_str(), "wb"));
   if (!output) return unwritable();
   QPDFWriter writer(pdf);
   writer.setOutputFile(file.c_str(), output.get(), false);

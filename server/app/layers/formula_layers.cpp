@@ -9,7 +9,7 @@
 #include "domain/layers/tile_mirror.h"
 #include "domain/people/role.h"
 #include "domain/people/visibility.h"
-#include "domain/scene/model.h"
+#include "domain/scene/model_measures.h"
 #include "expression/expression_parser.h"
 #include "jobs/shape_layer.h"
 #include "room/edit.h"
@@ -183,8 +183,7 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
   edit.edit = room::ComputeEdit{formula.expression, std::move(formula.views), overwrites};
   const auto done = STRATA_TRY(edit_and_wait(*room, std::move(edit), services.edits));
   // The layer stays stale if its values have become wrong in the meantime (Models::update).
-  if (const Model now = room->model(); now.unit != before.unit || now.up != before.up)
-    return room->layers().find(to_string(layer.id));
+  if (!same_measures(room->model(), before)) return room->layers().find(to_string(layer.id));
   return room->layers().mark_computed(layer.id, layer.formula->expression,
                                       computed_sequence(formula, done), tables);
 }

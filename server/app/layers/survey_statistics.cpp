@@ -13,6 +13,7 @@
 #include "domain/people/question.h"
 #include "domain/scene/model.h"
 #include "query/statistics/quantiles.h"
+#include "query/statistics/quantities.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/room.h"
@@ -193,7 +194,7 @@ std::vector<SurveyColumn> survey_columns(const std::vector<SurveyStatistics>& su
 }  // namespace
 
 double SurveyLayer::share() const {
-  return surface_m2 > 0 ? std::min(1.0, statistics.area_m2 / surface_m2) : 0;
+  return query::share_of_surface(statistics.area_m2, surface_m2);
 }
 
 bool holds_classes(const Layer& layer) {

@@ -91,8 +91,7 @@ std::string class_name(const ReportWords& words, const Layer& layer, const OfLay
 std::vector<report::Cell> row_of(const ReportWords& words, const query::Quantity& quantity,
                                  const std::vector<double>& measures, const OfLayer& found,
                                  std::string name, std::optional<report::Color> swatch) {
-  const double surface_m2 = found.all.surface_m2,
-               share = surface_m2 > 0 ? std::min(1.0, quantity.area_m2 / surface_m2) : 0;
+  const double share = query::share_of_surface(quantity.area_m2, found.all.surface_m2);
   std::vector<report::Cell> row{report::Cell{std::move(name), swatch},
                                 report::Cell{std::to_string(quantity.pieces)},
                                 report::Cell{area_in(words, quantity.area_m2)}};

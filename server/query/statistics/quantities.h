@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -29,6 +30,12 @@ struct Quantities {
   Quantity sum;                   // sum over all classes
   double surface_m2 = 0;          // area of the whole model
 };
+
+// Returns the fraction of the surface that an area has, from 0 to 1. Rounding can make the sum of
+// areas larger than the surface.
+inline double share_of_surface(double area_m2, double surface_m2) {
+  return surface_m2 > 0 ? std::min(1.0, area_m2 / surface_m2) : 0;
+}
 
 // Returns the quantities of each class, over valid surface texels without the gutter. The map and
 // its graph must have the resolution of the layer. Equal inputs give equal results. Returns an

@@ -1,4 +1,5 @@
 #include "room/open/open_room.h"
+#include "domain/scene/model_measures.h"
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
@@ -251,7 +252,7 @@ void OpenRoom::replace_model(const Model& stored,
   bool outdates_layers = false;
   {
     std::lock_guard lock(mutex_);
-    outdates_layers = stored.up != model_.up || stored.unit != model_.unit;
+    outdates_layers = !same_measures(stored, model_);
     if (stored.up != model_.up) contact_shadow_ = std::move(shadow);
     model_ = stored;
     // As in Models::update.

@@ -81,7 +81,7 @@ def make_site(server):
         server.ok("POST", M + "/layers/damage/edits", fill)
     camera = camera_from(server.ok("GET", M).json(), (0.3, -1, 0.3), width=800, height=600)
     shown = {"camera": camera, "layers": ["cracks"], "format": "png"}
-    server.request(
+    server.ok(
         "POST",
         "/tables/damage/records/1/attachments?name=rim.png",
         server.ok("POST", M + "/frame", shown).body,

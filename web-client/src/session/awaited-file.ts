@@ -5,8 +5,8 @@ import type { LitElement, ReactiveController, TemplateResult } from "lit";
 import { ApiError } from "../net/api-error";
 import type { ProblemBody } from "../core/types";
 import { styled } from "../ui/styled";
-import { texts } from "../texts";
-import { isBusy, type LayerJob } from "./layer-jobs";
+import { MovedFocus } from "../ui/moved-focus";
+import { isBusy, stepOf, type LayerJob } from "./layer-jobs";
 import type { ModelSession } from "./model-session";
 
 /** The texts of the footer. `form` is the id of the form that the button submits. */
@@ -24,11 +24,8 @@ export interface FileFooter {
   problem: string;
 }
 
-const kActions = 'button[slot="actions"]';
-
 export class AwaitedFile implements ReactiveController {
   private _sending = false;
-  private _hadFocus = false;
 
   /** `refuse` shows the problem of a refused request or a failed job. */
   constructor(
@@ -36,6 +33,7 @@ export class AwaitedFile implements ReactiveController {
     private readonly _refuse: (problem: ProblemBody) => void,
   ) {
     _host.addController(this);
+    new MovedFocus(_host, 'button[slot="actions"]');
   }
 
   private get job(): LayerJob | null {
@@ -62,15 +60,7 @@ export class AwaitedFile implements ReactiveController {
     void this._host.session.files.leave();
   }
 
-  /** Moves the focus from a button that has disappeared or cannot be pressed now. */
-  hostUpdated(): void {
-    const root = this._host.shadowRoot;
-    if (!root || !this._hadFocus || root.activeElement?.matches(":enabled")) return;
-    root.querySelector<HTMLElement>(`${kActions}:enabled`)?.focus();
-  }
-
   hostUpdate(): void {
-    this._hadFocus = this._host.shadowRoot?.activeElement?.matches(kActions) ?? false;
     const { files, jobs } = this._host.session;
     const { job } = this;
     if (!job?.problem) return;
@@ -125,7 +115,7 @@ export class AwaitedFile implements ReactiveController {
     return html`<div class="bar" role="progressbar" aria-label=${making} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
         <i ${styled({ width: `${percent}%` })}></i>
       </div>
-      <span class="hint">${job.state === "queued" ? texts.layer_jobs.queued : job.message || making}</span>`;
+      <span class="hint">${stepOf(job, making)}</span>`;
   }
 }
 

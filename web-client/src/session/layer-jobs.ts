@@ -7,6 +7,7 @@ import { ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
 import type { Job, LayerCreate, ProblemBody, Transfer, TransferReport } from "../core/types";
 import { followJob, jobIsOver } from "../net/follow-job";
+import { texts } from "../texts";
 
 export interface LayerJob {
   key: number;
@@ -23,6 +24,10 @@ export interface StartedJob {
 }
 
 export const isBusy = (entry: LayerJob): boolean => !entry.problem && !jobIsOver(entry.job);
+
+/** Describes what a job does now. `otherwise` is for a job that does not say it. */
+export const stepOf = (job: Job, otherwise = ""): string =>
+  job.state === "queued" ? texts.layer_jobs.queued : job.message || otherwise;
 
 export class LayerJobs {
   entries: readonly LayerJob[] = [];

@@ -36,7 +36,7 @@ nlohmann::json sums_json(const query::Quantity& quantity) {
 }
 
 double share_of(const query::Quantity& quantity, const query::Quantities& all) {
-  return all.surface_m2 > 0 ? std::min(1.0, quantity.area_m2 / all.surface_m2) : 0;
+  return query::share_of_surface(quantity.area_m2, all.surface_m2);
 }
 
 nlohmann::json quantities_json(const query::Quantities& all, const Layer& layer, const Names& names,

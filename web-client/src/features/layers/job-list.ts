@@ -6,7 +6,7 @@ import { customElement, property } from "lit/decorators.js";
 import { formatArea, formatBytes, shareText } from "../../domain/measure";
 import type { TransferReport } from "../../core/types";
 import { icon } from "../../ui/icons";
-import { isBusy, type LayerJob } from "../../session/layer-jobs";
+import { isBusy, stepOf, type LayerJob } from "../../session/layer-jobs";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
@@ -134,7 +134,7 @@ function jobRow(session: ModelSession, entry: LayerJob): TemplateResult {
           >
             <i ${styled({ width: `${percent}%` })}></i>
           </div>
-          <span class="said hint">${job.state === "queued" ? words.queued : job.message || words.running}</span>`
+          <span class="said hint">${stepOf(job, words.running)}</span>`
         : nothing
     }
     ${job.file && !problem ? html`<span class="said hint">${job.file.name}, <span>${formatBytes(job.file.bytes)}</span></span>` : nothing}

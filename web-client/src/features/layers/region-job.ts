@@ -13,7 +13,9 @@ import { formatArea } from "../../domain/measure";
 import type { Api } from "../../net/api";
 import { ApiError } from "../../net/api-error";
 import { followJob } from "../../net/follow-job";
+import { stepOf } from "../../session/layer-jobs";
 import { texts } from "../../texts";
+import { MovedFocus } from "../../ui/moved-focus";
 import { styled } from "../../ui/styled";
 
 export interface RegionJobHost extends ReactiveControllerHost {
@@ -37,26 +39,15 @@ export class RegionJob implements ReactiveController {
   private _cancelled = false;
   /** Counts the changes of the input. */
   private _input = 0;
-  private _hadFocus = false;
 
   constructor(private readonly _host: RegionJobHost) {
     _host.addController(this);
+    new MovedFocus(_host, `.stop, ${kStarts}`);
   }
 
   /** A closed dialog changes nothing. */
   hostDisconnected(): void {
     void this.cancel();
-  }
-
-  hostUpdate(): void {
-    this._hadFocus = this._host.shadowRoot?.activeElement?.matches(`.stop, ${kStarts}`) ?? false;
-  }
-
-  /** Moves the focus from a button that has disappeared or cannot be pressed now. */
-  hostUpdated(): void {
-    const root = this._host.shadowRoot;
-    if (!root || !this._hadFocus || root.activeElement?.matches(":enabled")) return;
-    root.querySelector<HTMLElement>(`.stop, ${kStarts}:enabled`)?.focus();
   }
 
   get isBusy(): boolean {
@@ -135,7 +126,7 @@ export class RegionJob implements ReactiveController {
         ? html`<div class="progress" role="progressbar" aria-label=${words.progress} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
               <i ${styled({ width: `${percent}%` })}></i>
             </div>
-            <span class="hint">${job?.state === "queued" ? texts.layer_jobs.queued : (job?.message ?? "")}</span>
+            <span class="hint">${job ? stepOf(job) : ""}</span>
             <button type="button" class="stop" @click=${() => void this.cancel()}>${words.stop}</button>`
         : nothing
     }

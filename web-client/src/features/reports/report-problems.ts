@@ -20,7 +20,7 @@ import { texts } from "../../texts";
 const words = texts.report_dialog;
 const kMostLayers = 100;
 
-/** The messages by field. The empty field stands for problems without a field. */
+/** The messages by field. Problems without a field have the key "". */
 export type Problems = ReadonlyMap<string, string>;
 
 /** Checks the input. `views` are the saved views of the model. */

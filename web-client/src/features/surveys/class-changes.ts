@@ -27,6 +27,7 @@ import { toldSurveyDate } from "../../domain/surveys";
 import { ApiError } from "../../net/api-error";
 import { followJob, jobIsOver } from "../../net/follow-job";
 import { followSession } from "../../session/follow-session";
+import { stepOf } from "../../session/layer-jobs";
 import { describeValue } from "../../session/layer-values";
 import type { ModelSession } from "../../session/model-session";
 import { numberInput } from "../../ui/number-input";
@@ -155,7 +156,7 @@ export class StrataClassChanges extends LitElement {
       ${
         this._busy
           ? html`<progress aria-label=${words.progress} max="100" value=${percent}></progress>
-            <span class="hint">${this._job?.state === "queued" ? texts.layer_jobs.queued : (this._job?.message ?? "")}</span>
+            <span class="hint">${this._job ? stepOf(this._job) : ""}</span>
             <button type="button" @click=${() => this.reset()}>${words.stop}</button>`
           : nothing
       }

@@ -1,3 +1,4 @@
+import type { ReactiveController } from "lit";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import type { CleanupReport } from "../../../src/core/protocol.gen";
@@ -276,16 +277,25 @@ describe("the job of a dialog", () => {
       activeElement: {
         matches: (selector: string) => selector.includes(".stop"),
       } as Element | null,
-      querySelector: (selector: string) => ({ focus: () => focused.push(selector) }),
+      querySelectorAll: (selector: string) => [
+        { matches: () => true, focus: () => focused.push(selector) },
+      ],
     };
-    const host = { session: { api }, shadowRoot: root, addController: () => {} };
-    const other = new RegionJob(host as unknown as RegionJobHost);
-    other.hostUpdate();
-    root.activeElement = null;
-    other.hostUpdated();
+    const controllers: ReactiveController[] = [];
+    const host = {
+      session: { api },
+      shadowRoot: root,
+      addController: (added: ReactiveController) => controllers.push(added),
+    };
+    new RegionJob(host as unknown as RegionJobHost);
+    const update = (then: () => void): void => {
+      for (const each of controllers) each.hostUpdate?.();
+      then();
+      for (const each of controllers) each.hostUpdated?.();
+    };
+    update(() => (root.activeElement = null));
     expect(focused).toHaveLength(1);
-    other.hostUpdate(); // nothing in the dialog has the focus
-    other.hostUpdated();
+    update(() => {}); // nothing in the dialog has the focus
     expect(focused).toHaveLength(1);
   });
   it("is canceled when its dialog is closed", async () => {
