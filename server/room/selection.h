@@ -26,15 +26,17 @@ struct RegionAround {
   double radius = 0;  // in model units
 };
 struct RegionLike {
-  // The surface that looks like the surface at a position (query::Similarity).
+  // The surface that looks like the surface at a position, around this position or, with a path,
+  // around the surface under the path (query::Similarity).
   enum class By { color, normal, value };
   Place at;
+  std::vector<glm::dvec2> path{};  // pixels in the window of the camera of `at`
   By by = By::color;
   std::string layer{};                    // for By::value: the slug
   std::optional<SurfaceImageId> image{};  // for By::color; nullopt: as visible by default
   double tolerance = 0;
   bool contiguous = true;
-  std::optional<double> radius{};  // in model units; nullopt: no limit
+  std::optional<double> radius{};  // in model units; nullopt: no limit, only without a path
 };
 struct RegionWhere {  // the surface where a condition is true
   Expression condition;

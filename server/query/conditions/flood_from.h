@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "domain/layers/tile.h"
@@ -10,11 +12,11 @@
 
 namespace strata::query {
 
-// Selects the texels that are connected to `start` through texels for which `belongs(texel)` is
-// true. Calls `belongs` once for each texel at most.
+// Selects the texels that are connected to one of `starts` through texels for which
+// `belongs(texel)` is true. Calls `belongs` once for each texel at most.
 template <class Belongs>
 TexelSelection flood_from(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                          std::uint32_t start, Belongs belongs) {
+                          std::span<const std::uint32_t> starts, Belongs belongs) {
   TexelSelection selection(map.block_of_slot.size(), 0), tested(selection);
   std::vector<std::uint32_t> open;
   const auto take = [&](std::uint32_t texel) {
@@ -25,7 +27,7 @@ TexelSelection flood_from(const mesh::SurfaceMap& map, const mesh::TexelGraph& g
     selection[texel / 64] |= bit;
     open.push_back(texel);
   };
-  take(start);
+  for (const std::uint32_t start : starts) take(start);
   const QuestionTurn turn;
   for (std::size_t done = 0; !open.empty(); ++done) {
     if (done % kTexelsPerTile == 0) turn.check(kTexelsPerTile);
@@ -34,6 +36,11 @@ TexelSelection flood_from(const mesh::SurfaceMap& map, const mesh::TexelGraph& g
     mesh::for_each_neighbour(map, graph, texel, take);
   }
   return selection;
+}
+template <class Belongs>
+TexelSelection flood_from(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                          std::uint32_t start, Belongs belongs) {
+  return flood_from(map, graph, std::span(&start, 1), std::move(belongs));
 }
 
 }  // namespace strata::query

@@ -5,10 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <utility>
 
 #include "mesh/parallel.h"
-#include "query/conditions/flood.h"
 #include "query/conditions/flood_from.h"
 #include "query/conditions/texel_values.h"
 #include "query/conditions/tile_table.h"
@@ -188,6 +188,48 @@ class Comparison {
   typename Field::Compared at_start_{0};
 };
 
+// The space within the radius of the places. Use each object on one thread.
+class Reach {
+ public:
+  explicit Reach(const Similarity& similarity)
+      : places_(similarity.around), radius_(similarity.radius) {
+    if (!std::isfinite(radius_)) return;
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      cells_[cell_of(places_[i].position)].push_back(i);
+  }
+  bool contains(const glm::vec3& at) {
+    if (!std::isfinite(radius_)) return true;
+    if (is_near(last_, at)) return true;  // like most texels, because their neighbors are
+    const Cell middle = cell_of(at);
+    for (int i = 0; i < 27; ++i) {
+      const auto cell =
+          cells_.find({middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1});
+      if (cell == cells_.end()) continue;
+      for (const std::size_t place : cell->second)
+        if (is_near(place, at)) {
+          last_ = place;
+          return true;
+        }
+    }
+    return false;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  Cell cell_of(const glm::vec3& at) const {
+    const glm::dvec3 cell = glm::floor(glm::dvec3(at) / double{radius_});
+    return {static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
+            static_cast<std::int64_t>(cell.z)};
+  }
+  bool is_near(std::size_t place, const glm::vec3& at) const {
+    return place < places_.size() && glm::distance(places_[place].position, at) <= radius_;
+  }
+  const std::vector<Similarity::Place>& places_;
+  const float radius_;
+  std::map<Cell, std::vector<std::size_t>> cells_;  // cubes with side radius_
+  std::size_t last_ = 0;
+};
+
 void keep_if(TexelSelection& selection, int threads,
              const std::function<bool(std::uint32_t)>& belongs) {
   constexpr std::size_t kSlotsAtOnce = 256;
@@ -208,19 +250,20 @@ template <class Field>
 TexelSelection select_similar(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
                               const Field& field, const Similarity& similarity, int threads) {
   const Comparison<Field> similar(map, graph, field, similarity.start);
+  std::vector<std::uint32_t> starts;
+  for (const Similarity::Place& place : similarity.around) starts.push_back(place.texel);
+  Reach reach(similarity);
+  const auto in_reach = [&](std::uint32_t texel) {
+    return reach.contains(map.position(texel / 64, static_cast<int>(texel % 64)));
+  };
   if (!similarity.contiguous) {
-    auto selection =
-        std::isfinite(similarity.radius)
-            ? select_near(map, graph, similarity.start, similarity.place, similarity.radius)
-            : map.surface_mask;
+    auto selection = std::isfinite(similarity.radius) ? flood_from(map, graph, starts, in_reach)
+                                                      : map.surface_mask;
     keep_if(selection, threads, similar);
     return selection;
   }
-  return flood_from(map, graph, similarity.start, [&](std::uint32_t texel) {
-    return glm::distance(map.position(texel / 64, static_cast<int>(texel % 64)),
-                         similarity.place) <= similarity.radius &&
-           similar(texel);
-  });
+  return flood_from(map, graph, starts,
+                    [&](std::uint32_t texel) { return in_reach(texel) && similar(texel); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "mesh/texels/texel_graph.h"
 #include "query/conditions/texel_selection.h"
@@ -11,7 +12,8 @@
 
 namespace strata::query {
 
-// The selection of surface that looks like the surface at one place ("magic wand").
+// The selection of surface that looks like the surface at one place ("magic wand"), or of the part
+// of it that a brush passes ("smart brush").
 //
 // A texel is similar if its value differs from the value at `start` by at most `tolerance`. It is
 // also similar if the mean over the texel and its neighbors does (3 × 3 texels, fewer at open edges
@@ -19,13 +21,19 @@ namespace strata::query {
 // keeps the edges of regions, where the mean contains both sides. The value at `start` is the mean
 // there. Texels without a value are similar to each other only.
 struct Similarity {
-  std::uint32_t start = 0;  // a surface texel, numbered as in TexelGraph
-  glm::vec3 place{0};       // the position of `start`, in model space
-  // in model units, Euclidean distance from `place`
+  struct Place {
+    std::uint32_t texel = 0;  // of the surface, numbered as in TexelGraph
+    glm::vec3 position{0};    // in model space
+  };
+  std::uint32_t start = 0;  // the texel whose value is compared
+  // The selection lies around these places: one for a wand, the places under its path for a brush.
+  std::vector<Place> around{};
+  // in model units, Euclidean distance from the nearest place
   float radius = std::numeric_limits<float>::infinity();
   double tolerance = 0;
-  // true: only texels that are connected to `start` through similar texels within the radius.
-  // false: all similar texels on the surface that select_near selects.
+  // true: only texels that are connected to a place through similar texels within the radius.
+  // false: all similar texels that are connected to a place within the radius; without a limit, all
+  // similar texels of the surface.
   bool contiguous = true;
 };
 

@@ -1,6 +1,5 @@
 // The selection of surface that looks like the surface at a position.
-#include <limits>
-
+#include "domain/people/question.h"
 #include "mesh/parallel.h"
 #include "query/conditions/similar.h"
 #include "room/caches/appearance_cache.h"
@@ -16,9 +15,19 @@ Result<query::TexelSelection> OpenRoom::QueriesPart::texels_like(const Selection
   const auto start =
       STRATA_TRY(find_place(like.at, map, *room_.surface_lookup_, field + ".like.at"));
   const auto graph = STRATA_TRY(room_.surface_lookup_->graph(map));
-  query::Similarity similarity{start.texel, start.position, std::numeric_limits<float>::infinity(),
-                               like.tolerance, like.contiguous};
+  query::Similarity similarity{
+      .start = start.texel, .tolerance = like.tolerance, .contiguous = like.contiguous};
   if (like.radius) similarity.radius = static_cast<float>(*like.radius);
+  if (like.path.empty()) similarity.around.push_back({start.texel, start.position});
+  const QuestionTurn turn;
+  for (const glm::dvec2& pixel : like.path) {
+    turn.check();
+    const Camera& camera = std::get<PixelPlace>(like.at).camera;
+    // A path can leave the model.
+    if (const auto place = find_place(PixelPlace{camera, pixel.x, pixel.y}, map,
+                                      *room_.surface_lookup_, field + ".like.path"))
+      similarity.around.push_back({place->texel, place->position});
+  }
   const int threads = mesh::background_threads();
   switch (like.by) {
     case Selection::Like::By::color: {

@@ -82,6 +82,53 @@ def test_a_place_can_be_a_pixel_of_a_view(server):
     assert by_pixel["texels"] == by_point["texels"] and by_pixel["picture"]
 
 
+def test_a_brush_selects_similar_surface_along_its_path(server):
+    camera = camera_from(server.get(M).json(), (0, 0, 1), 800, 800, up=(0, 1, 0))
+
+    def pixel_of(x, y):
+        # the view is straight from above, so pixels are linear in x and y
+        a, b = (
+            server.ok("POST", M + "/pick", {"camera": camera, "x": px, "y": px}).json()["position"]
+            for px in (200, 600)
+        )
+        return [200 + 400 * (v - a[i]) / (b[i] - a[i]) for i, v in enumerate((x, y))]
+
+    # from the middle of the disc with radius 15 through its rim, and beyond
+    path = [pixel_of(40, 50 + step) for step in range(31)]
+    at = {"camera": camera, "x": path[0][0], "y": path[0][1]}
+    brushed = like(path=path, radius_mm=4)
+    brushed["within"]["like"]["at"] = at
+    strip = sum(  # of the disc, 8 mm wide, from a half disc below the middle to the rim
+        0.1 * 0.1e-6
+        for i in range(-150, 151)
+        for j in range(-150, 151)
+        if (x := i / 10) ** 2 + (y := j / 10) ** 2 <= 225
+        and abs(x) <= 4
+        and (y >= 0 or x * x + y * y <= 16)
+    )
+    near(select(server, brushed)["area_m2"], strip, 0.06)
+    # pixels off the model do not count
+    brushed["within"]["like"]["path"] = [[-50.0, -50.0], *path, [-60.0, 900.0]]
+    near(select(server, brushed)["area_m2"], strip, 0.06)
+    # the value at the beginning is compared, also if the path is elsewhere
+    brushed["within"]["like"]["path"] = [pixel_of(80, 50)]
+    near(select(server, brushed)["area_m2"], disc_m2(4), 0.06)
+    brushed["within"]["like"]["path"] = [pixel_of(60, 20)]
+    assert select(server, brushed)["texels"] == 0
+    painted = select(server, {**brushed, "into": {"layer": "damage", "value": 2}})
+    assert painted["edit"]["texels_changed"] == 0
+    for change, field in (
+        ({"at": {"point": [40, 50, 0]}}, "within.like.at"),
+        ({"radius_mm": None}, "within.like.radius_mm"),
+        ({"path": []}, "within.like.path"),
+    ):
+        wrong = {key: value for key, value in (brushed["within"]["like"] | change).items() if value}
+        if change.get("path") == []:
+            wrong["path"] = []
+        answer = server.post(M + "/select", {"within": {"like": wrong}})
+        assert answer.status == 422 and answer.json()["field"] == field, answer
+
+
 def test_a_surface_image_can_be_compared_even_if_it_is_hidden(server):
     image = png(64, 64, lambda x, y: (90, 90, 90))
     made = server.ok("POST", M + "/looks?name=UV", image, headers=IMAGE).json()

@@ -316,6 +316,65 @@ test("strokes inside and outside find a sherd, are undone, accepted and painted"
   await page.keyboard.press("l");
 });
 
+test("the brush of the wand selects a sherd across its rim, and Alt takes surface away", async () => {
+  await page.keyboard.press("Shift+G");
+  await page.keyboard.press("Shift+G"); // again: the brush
+  assert.ok(await radio(words.wand.brush).isChecked());
+  await radio(words.wand.ways.value).click();
+  const { name } = await server.json("GET", `${base}/layers/pieces`);
+  await page
+    .locator("strata-wand-panel label.field", { hasText: words.wand.layer })
+    .locator("select")
+    .selectOption({ label: name });
+  const width = page.locator("strata-wand-panel").getByLabel(`${words.brush.width}, px`);
+  await width.fill("60");
+  await width.press("Enter");
+  await browser.rested();
+  await browser.drag([
+    [0.46, 0.6],
+    [0.53, 0.6],
+    [0.53, 0.68],
+    [0.46, 0.68],
+  ]);
+  const first = await other_than(null, "the area under the brush");
+  await page.locator("strata-stage .lit").waitFor();
+  assert.ok(await radio(words.selection.modes.add).isChecked());
+  await shot("brushed");
+  // past the rim of the sherd: only a part of what the brush passes is added
+  await browser.drag([
+    [0.5, 0.64],
+    [0.73, 0.66],
+  ]);
+  const second = await other_than(first, "the area of two strokes");
+  assert.ok(second > first, `${second} is not more than ${first}`);
+  await shot("brushed_to_the_rim");
+  await page.keyboard.down("Alt");
+  await browser.drag([
+    [0.46, 0.6],
+    [0.48, 0.6],
+  ]);
+  await page.keyboard.up("Alt");
+  const third = await other_than(second, "the area after taking away");
+  assert.ok(third < second, `${third} is not less than ${second}`);
+  await from_menu(words.selection.undo);
+  assert.equal(await other_than(third, "the area after undo"), second);
+  await page.locator("strata-stage .surface").focus();
+  await page.keyboard.press("Enter");
+  await selection().waitFor({ state: "detached" });
+  await browser.saved();
+  const { layers, area_m2 } = await server.json("POST", `${base}/select`, {
+    within: { where: "valid(test)" },
+    layers: ["pieces"],
+  });
+  const most = Math.max(...layers.pieces.keys.map((each) => each.area_m2));
+  assert.ok(most > 0.9 * area_m2, `only ${most} of ${area_m2} m² are on one sherd`);
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  assert.equal(await painted_m2(), 0);
+  await radio(words.wand.clicks).click();
+  await page.keyboard.press("l");
+});
+
 test("on a layer of records, a selection becomes a record, and finds its records", async () => {
   await server.json("POST", `${base}/layers`, {
     name: "Finds",

@@ -65,7 +65,7 @@ TexelAppearance appearance_of(const mesh::SurfaceMap& map, ColorAt color_at) {
 
 Similarity around(const mesh::SurfaceMap& map, const glm::vec3& place, double tolerance) {
   const std::uint32_t start = texel_near(map, place);
-  return {.start = start, .place = position(map, start), .tolerance = tolerance};
+  return {.start = start, .around = {{start, position(map, start)}}, .tolerance = tolerance};
 }
 
 double area_of(const mesh::SurfaceMap& map, const TexelSelection& selection) {
@@ -154,20 +154,21 @@ std::vector<std::optional<double>> differences(const Surface& surface,
   return all;
 }
 
-// Grows the selection by all neighbors, until nothing changes.
-TexelSelection grown(const Surface& surface, std::uint32_t start,
-                     const std::vector<std::uint8_t>& similar) {
+// Grows the selection from those places that belong, by all neighbors, until nothing changes.
+TexelSelection grown(const Surface& surface, const std::vector<Similarity::Place>& around,
+                     const std::vector<std::uint8_t>& belongs) {
   TexelSelection selection(surface.map.block_of_slot.size(), 0);
   const auto set = [&](std::uint32_t texel) {
     selection[texel / 64] |= std::uint64_t{1} << (texel % 64);
   };
-  set(start);
+  for (const Similarity::Place& place : around)
+    if (belongs[place.texel] != 0) set(place.texel);
   for (bool grows = true; grows;) {
     grows = false;
     for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
       if (!is_in(selection, texel)) return;
       mesh::for_each_neighbour(surface.map, surface.graph, texel, [&](std::uint32_t next) {
-        if (is_in(selection, next) || similar[next] == 0) return;
+        if (is_in(selection, next) || belongs[next] == 0) return;
         set(next);
         grows = true;
       });
@@ -192,24 +193,31 @@ TEST(Similar, selects_the_same_texels_as_brute_force) {
     });
     for (const double tolerance : {4.0, 9.0, 14.0, 30.0}) {
       const std::uint32_t start = texels[random() % texels.size()];
-      const glm::vec3 place = position(surface.map, start);
-      const float radius = tolerance == 30 ? INFINITY : 0.8f;
+      // one place is a wand, several places are a brush
+      std::vector<Similarity::Place> around{{start, position(surface.map, start)}};
+      for (std::size_t more = random() % 4; more > 0; --more) {
+        const std::uint32_t texel = texels[random() % texels.size()];
+        around.push_back({texel, position(surface.map, texel)});
+      }
+      const float radius = tolerance == 30 ? INFINITY : around.size() > 1 ? 0.4f : 0.8f;
       const auto far = differences(surface, colors, start);
-      std::vector<std::uint8_t> similar(colors.size());
+      std::vector<std::uint8_t> similar(colors.size()), near(colors.size());
       bool clear = true;  // no texel is within the rounding of the tolerance
       for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
-        similar[texel] = far[texel] && *far[texel] <= tolerance &&
-                         glm::distance(position(surface.map, texel), place) <= radius;
+        near[texel] = std::ranges::any_of(around, [&](const Similarity::Place& place) {
+          return glm::distance(position(surface.map, texel), place.position) <= radius;
+        });
+        similar[texel] = far[texel] && *far[texel] <= tolerance && near[texel] != 0;
         clear = clear && !(far[texel] && std::abs(*far[texel] - tolerance) < 1e-3);
       });
       if (!clear) continue;
       ++tested;
-      const Similarity similarity{start, place, radius, tolerance, true};
+      const Similarity similarity{start, around, radius, tolerance, true};
       EXPECT_EQ(select_similar_colors(surface.map, surface.graph, colors, similarity),
-                grown(surface, start, similar));
+                grown(surface, around, similar));
       Similarity everywhere = similarity;
       everywhere.contiguous = false;
-      TexelSelection expected = select_near(surface.map, surface.graph, start, place, radius);
+      TexelSelection expected = grown(surface, around, near);
       if (!std::isfinite(radius)) expected = surface.map.surface_mask;
       for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
         if (similar[texel] == 0) expected[texel / 64] &= ~(std::uint64_t{1} << (texel % 64));
@@ -268,11 +276,12 @@ TEST(Similar, an_area_is_the_same_on_both_sides_of_a_seam) {
     const auto colors = appearance_of(map, [&](const glm::vec3& at) {
       return is_in_cap(at, middle, 20) ? 0xff2030c0u : 0xffc0c0c0u;
     });
-    const auto from_one = select_similar_colors(map, ball().graph, colors,
-                                                {.start = one, .place = middle, .tolerance = 5});
+    const auto from_one = select_similar_colors(
+        map, ball().graph, colors, {.start = one, .around = {{one, middle}}, .tolerance = 5});
     EXPECT_NEAR(area_of(map, from_one), cap_area(20), 0.02 * cap_area(20));
-    EXPECT_EQ(from_one, select_similar_colors(map, ball().graph, colors,
-                                              {.start = other, .place = middle, .tolerance = 5}));
+    EXPECT_EQ(from_one,
+              select_similar_colors(map, ball().graph, colors,
+                                    {.start = other, .around = {{other, middle}}, .tolerance = 5}));
     ++seams;
   }
   EXPECT_GE(seams, 7);
@@ -295,6 +304,35 @@ TEST(Similar, selects_all_similar_texels_in_the_radius_if_they_need_not_be_conne
   EXPECT_NEAR(area_of(map, select()), 2 * cap_area(15), 0.06 * cap_area(15));
   similarity.radius = 0.1f;
   EXPECT_NEAR(area_of(map, select()), kPi * 0.01, 0.05 * kPi * 0.01);
+}
+
+TEST(Similar, a_brush_selects_only_the_similar_surface_that_it_passes) {
+  const mesh::SurfaceMap& map = ball().map;
+  const auto colors = appearance_of(map, [](const glm::vec3& at) {
+    return is_in_cap(at, {1, 0, 0}, 25) ? 0xff2030c0u : 0xffc0c0c0u;
+  });
+  // Begins in the patch, and leaves it along the equator.
+  Similarity similarity = around(map, {1, 0, 0}, 5);
+  similarity.radius = 0.12f;
+  for (int degrees = 1; degrees <= 50; ++degrees) {
+    const float angle = glm::radians(static_cast<float>(degrees));
+    const std::uint32_t texel = texel_near(map, {std::cos(angle), 0, std::sin(angle)});
+    similarity.around.push_back({texel, position(map, texel)});
+  }
+  const auto selected = select_similar_colors(map, ball().graph, colors, similarity);
+  double expected = 0;
+  for_each_surface_texel(map, [&](std::uint32_t texel) {
+    const glm::vec3 at = position(map, texel);
+    const float along = std::clamp(std::atan2(at.z, at.x), 0.f, glm::radians(50.f));
+    const bool passed = glm::distance(at, {std::cos(along), 0, std::sin(along)}) <= 0.12f;
+    if (passed && is_in_cap(at, {1, 0, 0}, 25)) expected += double{map.area[texel]};
+  });
+  EXPECT_NEAR(area_of(map, selected), expected, 0.03 * expected);
+  // The value at the beginning is compared, also where the brush is on other surface.
+  similarity.start = texel_near(map, {0, 0, 1});
+  const auto rest = select_similar_colors(map, ball().graph, colors, similarity);
+  for (std::size_t slot = 0; slot < rest.size(); ++slot) ASSERT_EQ(rest[slot] & selected[slot], 0u);
+  EXPECT_GT(area_of(map, rest), 0.05);
 }
 
 // ── normals and values ───────────────────────────────────────────────────────────────────────────
@@ -365,7 +403,7 @@ TEST(Similar, classes_are_selected_like_connected_areas) {
   for (int i = 0; i < 12; ++i) {
     const std::uint32_t start = texels[random() % texels.size()];
     EXPECT_EQ(select_similar_values(map, ball().graph, view,
-                                    {.start = start, .place = position(map, start)}),
+                                    {.start = start, .around = {{start, position(map, start)}}}),
               select_connected(map, ball().graph, tiles, start));
   }
 }

@@ -18,6 +18,9 @@ export type Section = Plane[];
 /** Pointer path. Pixels in the window of the camera. Consecutive points are joined. A path with only one point is a dab. */
 export type Path = Point2[];
 
+/** Pixels under a path. Pixels in the window of the camera. They are not joined, and pixels off the model do not count. */
+export type PixelPath = Point2[];
+
 /** Kind of problem. A stable URI reference, relative to the server. Programs should check this member. The page `/problems` describes all kinds. */
 export type ProblemType = "/problems#malformed" | "/problems#unauthenticated" | "/problems#forbidden" | "/problems#not_found" | "/problems#method_not_allowed" | "/problems#not_acceptable" | "/problems#too_slow" | "/problems#conflict" | "/problems#superseded" | "/problems#gone" | "/problems#stale" | "/problems#too_large" | "/problems#unsupported" | "/problems#range_not_satisfied" | "/problems#misdirected" | "/problems#invalid" | "/problems#upgrade_required" | "/problems#version_required" | "/problems#too_many_requests" | "/problems#head_too_large" | "/problems#cancelled" | "/problems#moved" | "/problems#internal" | "/problems#damaged" | "/problems#not_implemented" | "/problems#bad_gateway" | "/problems#busy" | "/problems#unavailable" | "/problems#timed_out" | "/problems#gpu_lost" | "/problems#out_of_memory" | "/problems#storage_full";
 
@@ -3437,10 +3440,12 @@ export interface Like {
   look?: LayerRef;
   /** color: distance in CIELAB (ΔE of 1976); 2 is hardly visible, and the distance from black to white is 100. normal: angle in degrees. value: difference of values. */
   tolerance: number;
-  /** true: only surface that is connected to the point through similar surface. false: all similar surface that is connected to the point within `radius_mm`, or the whole similar surface without `radius_mm`. Default: true. */
+  /** true: only surface that is connected to the point or the path through similar surface. false: all similar surface that is connected to the point or the path within `radius_mm`, or the whole similar surface without `radius_mm`. Default: true. */
   contiguous?: boolean;
-  /** Maximum distance from the point, in a straight line, in millimeters on the object. Default: no limit. */
+  /** Maximum distance from the point, or from the surface at the pixels of `path`, in a straight line, in millimeters on the object. Default: no limit. */
   radius_mm?: number;
+  /** With `radius_mm` and a camera in `at`: the path of a brush. The selection is then around the surface at these pixels, and not around the point. The point still gives the compared value. */
+  path?: PixelPath;
 }
 
 /** Axis of a rollout. */

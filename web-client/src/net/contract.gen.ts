@@ -3041,6 +3041,8 @@ export interface components {
         PickRequest: wire.PickRequest;
         /** Records of the pieces of a class */
         PieceRecords: wire.PieceRecords;
+        /** Pixels under a path */
+        PixelPath: wire.PixelPath;
         /** Plane in space */
         Plane: wire.Plane;
         /** Pixel in the window of a camera, or texture coordinate */

@@ -45,10 +45,12 @@ export function keyCommands(host: PageHost): Command[] {
       title: texts.tools[tool],
       glyph: tool,
       problem: kChangingTools.includes(tool) ? changing : undefined,
-      // if the tool is already active, shows its options, or changes the side of the strokes
+      // If the tool is already active, changes the side of the strokes or the way of the wand, or
+      // shows the options of the tool.
       run: () => {
         if (session.tools.active !== tool || !hasOptions(tool)) session.chooseTool(tool);
         else if (tool === "strokes") session.strokes?.draw(!session.strokes.drawsInside);
+        else if (tool === "wand") session.selection?.useBrush(!session.selection.wand.brushes);
         else host.panel("layers");
       },
     }),

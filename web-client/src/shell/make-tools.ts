@@ -21,6 +21,9 @@ import { PointTool } from "../features/records/point-tool";
 import type { Tool, ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 
+// Between the pixels of a selecting brush, as a share of its radius: its edge deviates by 1 %.
+const kBrushSpacing = 0.3;
+
 export interface ToolHost {
   /** Uses the selection of polygon, lasso, wand and strokes, after it is loaded. */
   withSelection(use: (selection: Selection) => void): void;
@@ -35,12 +38,23 @@ export interface ToolHost {
 }
 
 export function makeTools(session: ModelSession, host: ToolHost): ToolManager {
+  const { painting } = session;
   const brushHost = {
-    beginStroke: (erase: boolean) => session.painting.beginStroke(erase),
-    strokeEnded: () => session.painting.strokeEnded(),
-    radiusPx: () => session.painting.radiusWindowPx(),
-    widthOf: (pressure: number) => session.painting.widthOf(pressure),
+    strokeEnded: () => painting.strokeEnded(),
+    radiusPx: () => painting.radiusWindowPx(),
+    widthOf: (pressure: number) => painting.widthOf(pressure),
     nextFrame: (callback: () => void) => void requestAnimationFrame(callback),
+  };
+  const radiusMm = (): number => painting.widthMetres() * 500;
+  const wandBrush = {
+    ...brushHost,
+    beginStroke: (at: PointerSample) => {
+      const { selection } = session;
+      if (!selection || !painting.beginOutline(at)) return null;
+      selection.addSimilar([at.x, at.y], at, radiusMm());
+      const spacing = painting.radiusWindowPx() * kBrushSpacing;
+      return { extend: (points: readonly Point[]) => selection.brushTo(points, spacing), end() {} };
+    },
   };
   const comment = (sample: PointerSample): void => void session.comments.begin(sample);
   const middle = (): PointerSample => ({
@@ -105,8 +119,11 @@ export function makeTools(session: ModelSession, host: ToolHost): ToolManager {
   const tools: Readonly<Record<ToolName, Tool>> = {
     orbit: new OrbitTool(navigator),
     pan: new PanTool(navigator),
-    brush: new BrushTool("brush", brushHost),
-    eraser: new BrushTool("eraser", brushHost),
+    brush: new BrushTool("brush", { ...brushHost, beginStroke: () => painting.beginStroke(false) }),
+    eraser: new BrushTool("eraser", {
+      ...brushHost,
+      beginStroke: () => painting.beginStroke(true),
+    }),
     polygon: new PolygonTool(outlineHost),
     lasso: new LassoTool(outlineHost),
     strokes: new StrokesTool({ strokes: () => host.strokes() }),
@@ -114,7 +131,12 @@ export function makeTools(session: ModelSession, host: ToolHost): ToolManager {
     wand: new WandTool({
       orbit: navigator.orbit,
       pan: navigator.pan,
-      selectAt: (at) => host.withSelection((selection) => selection.addSimilar([at.x, at.y], at)),
+      selectAt: (at) =>
+        host.withSelection((selection) =>
+          selection.addSimilar([at.x, at.y], at, selection.wand.brushes ? radiusMm() : null),
+        ),
+      brushes: () => session.selection?.wand.brushes ?? false,
+      brush: wandBrush,
       middle,
       selectionKey: outlineHost.selection.key,
     }),

@@ -242,6 +242,7 @@ export class StrataStage extends LitElement {
     const { active: tool, outline } = session.tools;
     const locked = session.lockedTarget !== null;
     const paints = !locked && (tool === "brush" || tool === "eraser");
+    const brushes = paints || (!locked && tool === "wand" && !!session.selection?.wand.brushes);
     const selects = kSelectingTools.includes(tool) && hasPart("model_dialogs", this);
     const aims =
       tool === "polygon" ||
@@ -257,14 +258,14 @@ export class StrataStage extends LitElement {
       tool === "face" ||
       tool === "part";
     return html`<div
-        class="surface ${locked ? "locked" : paints ? "paint" : aims ? "aim" : tool}"
+        class="surface ${locked ? "locked" : brushes ? "paint" : aims ? "aim" : tool}"
         tabindex="0"
         role="application"
         aria-label=${texts.model.stage}
       >
         <canvas width="2" height="2"></canvas>
         ${this.litArea()}
-        ${paints ? this.brushCursor() : nothing}
+        ${brushes ? this.brushCursor() : nothing}
         ${this.selectionOutlines()}
         ${tool === "strokes" ? this.strokes() : nothing}
         ${outline ? outlineOverlay(session, outline) : nothing}
@@ -312,11 +313,12 @@ export class StrataStage extends LitElement {
     const [x, y] = [at.x / scale, at.y / scale];
     const radius = session.painting.radiusWindowPx() / scale;
     const layer = session.layers.selected;
+    const paints = session.tools.active === "brush";
     const erases = session.tools.active === "eraser";
     const color =
-      layer && !erases ? colorOf(layer.palette, session.painting.brush.valueFor(layer)) : null;
+      layer && paints ? colorOf(layer.palette, session.painting.brush.valueFor(layer)) : null;
     const fill = color ? cssColor(color) : "none";
-    const { shape } = session.painting.brush;
+    const shape = paints || erases ? session.painting.brush.shape : "disc";
     const square = shape === "square";
     if (typeof shape === "number" && radius >= 4)
       return this.shapeCursor(shape, x, y, radius, erases ? null : color);

@@ -416,6 +416,16 @@ export const laterTexts = {
       ["interpolation_error(", "Fehler der Interpolation: interpolation_error(Ebene, Reichweite)"],
     ],
   },
+  layer_preview: {
+    running: "Die Vorschau wird berechnet …",
+    picture: "Das Objekt in den Farben der Ebene, wie in der 3D-Ansicht",
+    nothing: "Kein Teil der Oberfläche hätte einen Wert.",
+    covers: (share: string) => `Bedeckt ${share} der Oberfläche.`,
+    range: (from: string, to: string, unit: string, share: string) =>
+      `${from} bis ${to}${unit ? ` ${unit}` : ""}, auf ${share} der Oberfläche.`,
+    coarse: "Mit weniger Details als die Ebene berechnet. Schmale Linien können fehlen.",
+  },
+
   layer_dialog: {
     blend: "Mischmodus",
     blend_hint:
@@ -425,6 +435,7 @@ export const laterTexts = {
       multiply: "Multiplizieren (dunkler)",
       screen: "Negativ multiplizieren (heller)",
     },
+    preview: "Vorschau",
     create_title: "Neue Ebene",
     edit_title: (name) => `Ebene „${name}“`,
     question: "Was hält die Ebene fest?",
@@ -920,6 +931,11 @@ export const laterTexts = {
   },
 
   wand: {
+    select_with: "Auswählen mit",
+    clicks: "Klick",
+    brush: "Pinsel",
+    how_brush:
+      "Malen Sie über die Oberfläche. Ausgewählt wird nur, was so aussieht wie die Oberfläche am Anfang. Alt entfernt Oberfläche. Umschalt + G wechselt zu Klicks.",
     how: "Klicken Sie eine Stelle an, um die Oberfläche auszuwählen, die ihr gleicht. Ziehen dreht das Modell. Eingabe wählt in der Bildmitte aus, Umschalt + Eingabe fügt dort hinzu.",
     by: "Vergleichen",
     ways: { color: "Farbe", normal: "Ausrichtung", value: "Werte" },

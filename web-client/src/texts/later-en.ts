@@ -418,11 +418,22 @@ export const laterTexts = {
       ["interpolation_error(", "error of the interpolation: interpolation_error(layer, range)"],
     ] as [string, string][],
   },
+  layer_preview: {
+    running: "Computing the preview…",
+    picture: "The object in the colors of the layer, as the 3D view shows it",
+    nothing: "No part of the surface would have a value.",
+    covers: (share: string) => `Covers ${share} of the surface.`,
+    range: (from: string, to: string, unit: string, share: string) =>
+      `${from} to ${to}${unit ? ` ${unit}` : ""}, on ${share} of the surface.`,
+    coarse: "Computed in less detail than the layer. Narrow lines can be missing.",
+  },
+
   layer_dialog: {
     blend: "Blending mode",
     blend_hint:
       "Multiply and Screen keep the relief and the photographs below visible. The colors then differ from the legend.",
     blends: { normal: "Normal", multiply: "Multiply (darkens)", screen: "Screen (lightens)" },
+    preview: "Preview",
     create_title: "New layer",
     edit_title: (name: string) => `Layer “${name}”`,
     question: "What does the layer record?",
@@ -908,6 +919,11 @@ export const laterTexts = {
   },
 
   wand: {
+    select_with: "Select with",
+    clicks: "Click",
+    brush: "Brush",
+    how_brush:
+      "Paint over the surface. Only what looks like the surface at the beginning is selected. Hold Alt to remove surface. Shift + G changes to clicks.",
     how: "Click a point to select the surface that looks like it. Drag to orbit. Enter selects in the middle of the view, Shift + Enter adds it there.",
     by: "Compare",
     ways: { color: "Color", normal: "Orientation", value: "Values" },

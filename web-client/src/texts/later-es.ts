@@ -419,11 +419,22 @@ export const laterTexts = {
       ["interpolation_error(", "error de la interpolación: interpolation_error(capa, alcance)"],
     ],
   },
+  layer_preview: {
+    running: "Calculando la vista previa…",
+    picture: "El objeto en los colores de la capa, como en la vista 3D",
+    nothing: "Ninguna parte de la superficie tendría un valor.",
+    covers: (share: string) => `Cubre ${share} de la superficie.`,
+    range: (from: string, to: string, unit: string, share: string) =>
+      `De ${from} a ${to}${unit ? ` ${unit}` : ""}, en ${share} de la superficie.`,
+    coarse: "Calculado con menos detalle que la capa. Pueden faltar líneas estrechas.",
+  },
+
   layer_dialog: {
     blend: "Modo de mezcla",
     blend_hint:
       "Con «Multiplicar» y «Pantalla» se siguen viendo el relieve y las fotos de debajo. Los colores difieren entonces de los de la leyenda.",
     blends: { normal: "Normal", multiply: "Multiplicar (oscurece)", screen: "Pantalla (aclara)" },
+    preview: "Vista previa",
     create_title: "Nueva capa",
     edit_title: (name) => `Capa «${name}»`,
     question: "¿Qué documenta?",
@@ -915,6 +926,11 @@ export const laterTexts = {
   },
 
   wand: {
+    select_with: "Seleccionar con",
+    clicks: "Clic",
+    brush: "Pincel",
+    how_brush:
+      "Pinte sobre la superficie. Solo se selecciona lo que se parece a la superficie del comienzo. Alt quita superficie. Mayús + G cambia a clics.",
     how: "Haga clic en un lugar para seleccionar la superficie que se le parece. Arrastre para girar. Intro selecciona en el centro de la vista, Mayús + Intro la añade allí.",
     by: "Comparar",
     ways: { color: "Color", normal: "Orientación", value: "Valores" },

@@ -4100,6 +4100,7 @@ void read(const nlohmann::json& json, Like& value) {
   read_member(json, "tolerance", value.tolerance);
   read_optional_member(json, "contiguous", value.contiguous);
   read_optional_member(json, "radius_mm", value.radius_mm);
+  read_optional_member(json, "path", value.path);
 }
 
 nlohmann::json to_json(const Like& value) {
@@ -4111,6 +4112,7 @@ nlohmann::json to_json(const Like& value) {
   write_member(json, "tolerance", value.tolerance);
   write_member(json, "contiguous", value.contiguous);
   write_optional_member(json, "radius_mm", value.radius_mm);
+  write_optional_member(json, "path", value.path);
   return json;
 }
 

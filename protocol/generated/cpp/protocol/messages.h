@@ -31,6 +31,7 @@ enum class Schema {
   Plane,
   Section,
   Path,
+  PixelPath,
   ProblemType,
   ProblemReason,
   BackgroundColor,
@@ -421,7 +422,7 @@ enum class Schema {
   SheetStroke,
   Unrolled,
 };
-constexpr int kSchemaCount = 395;
+constexpr int kSchemaCount = 396;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -431,6 +432,9 @@ extern const Schema kSchemaOf;
 
 // Pointer path. Pixels in the window of the camera. Consecutive points are joined. A path with only one point is a dab.
 using Path = std::vector<glm::dvec2>;
+
+// Pixels under a path. Pixels in the window of the camera. They are not joined, and pixels off the model do not count.
+using PixelPath = std::vector<glm::dvec2>;
 
 // Background of an image. A color gradient from top to bottom.
 struct Background {
@@ -3210,13 +3214,16 @@ struct Like {
   // color: distance in CIELAB (ΔE of 1976); 2 is hardly visible, and the distance from black to
   // white is 100. normal: angle in degrees. value: difference of values.
   double tolerance = 0;
-  // true: only surface that is connected to the point through similar surface. false: all similar
-  // surface that is connected to the point within `radius_mm`, or the whole similar surface without
-  // `radius_mm`.
+  // true: only surface that is connected to the point or the path through similar surface. false:
+  // all similar surface that is connected to the point or the path within `radius_mm`, or the whole
+  // similar surface without `radius_mm`.
   bool contiguous = true;
-  // Maximum distance from the point, in a straight line, in millimeters on the object. Default: no
-  // limit.
+  // Maximum distance from the point, or from the surface at the pixels of `path`, in a straight
+  // line, in millimeters on the object. Default: no limit.
   std::optional<double> radius_mm;
+  // With `radius_mm` and a camera in `at`: the path of a brush. The selection is then around the
+  // surface at these pixels, and not around the point. The point still gives the compared value.
+  std::optional<PixelPath> path;
   bool operator==(const Like&) const = default;
 };
 void read(const nlohmann::json& json, Like& value);

@@ -36,6 +36,17 @@ Result<room::Selection::Like> RegionReader::like(protocol::Like& body,
   like.tolerance = body.tolerance;
   like.contiguous = body.contiguous;
   if (body.radius_mm) like.radius = in_model_units(*body.radius_mm, room_.model().unit);
+  if (body.path) {
+    if (!body.at.camera)
+      return fail(ErrorCode::invalid, "Path without a camera",
+                  "The path consists of pixels. Send `at` as a pixel of a camera too.",
+                  field + ".at");
+    if (!like.radius)
+      return fail(ErrorCode::invalid, "Radius missing",
+                  "Send `radius_mm`, how far the selection reaches from the path.",
+                  field + ".radius_mm");
+    like.path = *body.path;
+  }
   switch (body.by) {
     case protocol::LikeBy::color: like.by = By::color; break;
     case protocol::LikeBy::normal: like.by = By::normal; break;

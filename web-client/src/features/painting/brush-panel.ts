@@ -6,9 +6,7 @@ import { customElement, property } from "lit/decorators.js";
 import { labelOf } from "../../domain/cells";
 import { readNumber, typedNumber } from "../../core/locale";
 import type { MarkKind } from "../../domain/marks";
-import { formatLength, formatNumber } from "../../domain/measure";
 import type { Layer } from "../../core/types";
-import { kWidths, type WidthUnit } from "./brush-settings";
 import { describeValue } from "../../session/layer-values";
 import { ask } from "../../ui/dialog";
 import { followSession } from "../../session/follow-session";
@@ -21,10 +19,9 @@ import { numberInput } from "../../ui/number-input";
 import { radioGroup } from "../../ui/radio-group";
 import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
+import "./brush-width";
 import "./shape-picker";
 import "../../session/fields/value-picker";
-
-const kSliderSteps = 1000;
 
 /** A request to open the dialog that fills by a condition. */
 export type WhereRequest = { dialog: "where"; layer: Layer };
@@ -48,12 +45,6 @@ export class StrataBrushPanel extends LitElement {
       }
       h2 {
         font-size: var(--text-large);
-      }
-      .width {
-        display: grid;
-        grid-template-columns: 1fr 5.75rem;
-        align-items: center;
-        gap: var(--space-2) var(--space-3);
       }
       .slant {
         display: grid;
@@ -112,7 +103,9 @@ export class StrataBrushPanel extends LitElement {
 
   private strokes(layer: Layer, erases: boolean): TemplateResult {
     return html`<h2>${erases ? texts.brush.eraser_title : texts.brush.title}</h2>
-      ${erases ? html`<p class="hint">${texts.brush.erases(labelOf(layer))}</p>` : this.value(layer)} ${this.width()}
+      ${erases ? html`<p class="hint">${texts.brush.erases(labelOf(layer))}</p>` : this.value(layer)}
+      <strata-brush-width .session=${this.session}></strata-brush-width>
+      <strata-shape-picker .session=${this.session}></strata-shape-picker>
       ${this.through()} ${this.slant()} ${this.session.painting.penUsed ? this.pressure() : nothing} ${erases ? nothing : this.whole(layer)}`;
   }
 
@@ -264,84 +257,6 @@ export class StrataBrushPanel extends LitElement {
       <button class="quiet" @click=${() => void this.fill(layer)}>${icon("drop")}${texts.brush.fill}</button>
       <button class="quiet" @click=${askWhere}>${icon("formula")}${texts.areas.where}</button>
     </div>`;
-  }
-
-  private width(): TemplateResult {
-    const { session } = this;
-    const { unit, width } = session.painting.brush;
-    const range = kWidths[unit];
-    const now = width[unit];
-    const slider = (kSliderSteps * Math.log(now / range.min)) / Math.log(range.max / range.min);
-    return html`<div class="width">
-        <span class="caption">${texts.brush.width}</span><span></span>
-        <input
-          type="range"
-          min="0"
-          max=${kSliderSteps}
-          .value=${String(Math.round(slider))}
-          aria-label=${texts.brush.width}
-          aria-valuetext="${formatNumber(now)} ${unit}"
-          @input=${(event: Event) => {
-            const share = Number((event.target as HTMLInputElement).value) / kSliderSteps;
-            const value = range.min * Math.pow(range.max / range.min, share);
-            this.setWidth(unit, unit === "px" ? Math.round(value) : Number(value.toPrecision(2)));
-          }}
-        />
-        <span class="number">
-          ${numberInput({
-            label: `${texts.brush.width}, ${unit}`,
-            value: now,
-            ...range,
-            changed: (text, input) => {
-              this.setWidth(unit, readNumber(text));
-              input.value = typedNumber(this.session.painting.brush.width[unit]);
-            },
-          })}
-          <span>${unit === "px" ? texts.brush.width_px : texts.brush.width_mm}</span>
-        </span>
-      </div>
-      <p class="hint">${this.equivalent(unit)}</p>
-      <div class="pair">
-        ${radioGroup<WidthUnit>({
-          label: texts.brush.fixed_on,
-          class: "segments",
-          choices: [
-            { value: "px", content: texts.brush.on_screen },
-            { value: "mm", content: texts.brush.on_object },
-          ],
-          chosen: unit,
-          choose: (chosen) => this.setUnit(chosen),
-        })}
-      </div>
-      <strata-shape-picker .session=${session}></strata-shape-picker>`;
-  }
-
-  /** Returns the width in the other unit, on the surface under the pointer. */
-  private equivalent(unit: WidthUnit): string {
-    const { session } = this;
-    if (!session.model) return "";
-    const radiusPx = session.painting.radiusWindowPx();
-    if (unit === "mm")
-      return `≈ ${formatNumber((2 * radiusPx) / session.view.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
-    const metres = session.painting.widthMetres();
-    return `≈ ${formatLength(metres)} ${texts.brush.on_object}`;
-  }
-
-  /** Changes the unit, and keeps the brush's current width on the screen. */
-  private setUnit(unit: WidthUnit): void {
-    const { session } = this;
-    if (session.painting.brush.unit === unit || !session.model) return;
-    const radiusPx = session.painting.radiusWindowPx();
-    const mm = session.painting.widthMetres() * 1000;
-    session.painting.setBrush((brush) => {
-      brush.unit = unit;
-      if (unit === "mm") brush.setWidth("mm", Number(mm.toPrecision(2)));
-      else brush.setWidth("px", Math.round((2 * radiusPx) / session.view.scale));
-    });
-  }
-
-  private setWidth(unit: WidthUnit, width: number): void {
-    this.session.painting.setBrush((brush) => brush.setWidth(unit, width));
   }
 
   private async fill(layer: Layer): Promise<void> {

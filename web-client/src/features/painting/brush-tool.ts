@@ -1,16 +1,23 @@
-// Brush and eraser. A drag becomes a stroke in the selected layer, sent as one batch for each
-// animation frame, or less often if the server has much work (net/stroke).
+// Brush, eraser, and the brush of the wand. The points of a drag are passed on as one batch for each
+// animation frame. For brush and eraser, they become a stroke in the selected layer (net/stroke).
 
-import type { StrokeHandle, Point } from "../../net/stroke";
+import type { Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import type { Tool } from "../../tools/tool";
+
+/** What a drag draws. */
+export interface Drawn {
+  /** `widths` is the share of the brush's radius at each point. */
+  extend(points: readonly Point[], widths: readonly number[]): void;
+  end(): void;
+}
 
 export interface BrushHost {
   /**
    * Returns null if painting is not possible. In this case, the host has shown the reason to the
    * user.
    */
-  beginStroke(erase: boolean): StrokeHandle | null;
+  beginStroke(at: PointerSample): Drawn | null;
   strokeEnded(): void;
   /**
    * Returns the radius in window pixels at the pointer. The tool omits points that are closer than
@@ -25,7 +32,7 @@ export interface BrushHost {
 const kWidthStep = 0.1; // as a share of the radius
 
 export class BrushTool implements Tool {
-  private _stroke: StrokeHandle | null = null;
+  private _stroke: Drawn | null = null;
   private _waiting: Point[] = [];
   private _widths: number[] = []; // the widths of the waiting points
   private _last: Point | null = null; // the last point of the stroke
@@ -35,7 +42,7 @@ export class BrushTool implements Tool {
   private _scheduled = false;
 
   constructor(
-    readonly name: "brush" | "eraser",
+    readonly name: "brush" | "eraser" | "wand",
     private readonly _host: BrushHost,
   ) {}
 
@@ -46,7 +53,7 @@ export class BrushTool implements Tool {
 
   down(sample: PointerSample): void {
     this.finish();
-    this._stroke = this._host.beginStroke(this.name === "eraser");
+    this._stroke = this._host.beginStroke(sample);
     if (!this._stroke) return;
     this._waiting = [];
     this._widths = [];

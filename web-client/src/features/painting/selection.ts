@@ -22,7 +22,7 @@ import {
   stepsOf,
   withinOf,
 } from "./selection-steps";
-import { Wand } from "./wand";
+import { type Brushed, Wand } from "./wand";
 
 /** The effect of the next part on the selection. */
 export type SelectionMode = "replace" | Combination;
@@ -73,6 +73,7 @@ export interface SelectionHost {
 type Steps = readonly SelectionStep[];
 
 const kMostUndone = 100;
+const kMostPathPoints = 4096; // of the path of a brush
 
 export class Selection implements FinishedOutlines {
   steps: Steps = [];
@@ -91,7 +92,8 @@ export class Selection implements FinishedOutlines {
   private _past: Steps[] = [];
   private _future: Steps[] = [];
   private _before: Steps | null = null; // the steps before the drag of a corner
-  private _clicked: { part: SelectionPart; at: Like["at"] } | null = null; // by the wand
+  // by the wand
+  private _clicked: { part: SelectionPart; at: Like["at"]; brushed: Brushed | null } | null = null;
   // an area that can still be replaced, the steps without it, and how it is combined with them
   private _proposal: { before: Steps; steps: Steps; combine: Combination | null } | null = null;
   private _accepted: Steps = []; // the last steps that the server has measured
@@ -136,14 +138,42 @@ export class Selection implements FinishedOutlines {
     this.addPart({ camera, path, ...(through ? { through } : {}) }, keys, corners);
   }
 
-  /** Selects the surface that looks like the surface at a pixel. */
-  addSimilar([x, y]: Point, keys: HeldKeys = {}): void {
+  /**
+   * Selects the surface that looks like the surface at a pixel. With the radius of a brush on the
+   * object, only as far as the brush reaches there.
+   */
+  addSimilar([x, y]: Point, keys: HeldKeys = {}, radiusMm: number | null = null): void {
     if (!this._host.mayPaint() || this.refusesMore(keys)) return;
     const at = { camera: this._host.camera(), x, y };
-    this.addPart({ like: this.wand.likeAt(at) }, keys);
+    const brushed: Brushed | null =
+      radiusMm === null ? null : { path: [[x, y]], radius_mm: radiusMm };
+    this.addPart({ like: this.wand.likeAt(at, brushed) }, keys);
     const part = this.steps[this.steps.length - 1];
-    if (part && isPart(part)) this._clicked = { part, at };
+    if (part && isPart(part)) this._clicked = { part, at, brushed };
     this._host.changed();
+  }
+
+  /**
+   * Moves the brush that began with `addSimilar` to further pixels. Keeps those that are `spacing`
+   * pixels apart.
+   */
+  brushTo(points: readonly Point[], spacing: number): void {
+    if (!this.clicked || !this._clicked?.brushed) return;
+    const path = [...this._clicked.brushed.path];
+    for (const point of points) {
+      const [x, y] = path[path.length - 1]!;
+      if (path.length < kMostPathPoints && Math.hypot(point[0] - x, point[1] - y) >= spacing)
+        path.push(point);
+    }
+    if (path.length === this._clicked.brushed.path.length) return;
+    this._clicked.brushed = { ...this._clicked.brushed, path };
+    this.wandChanged();
+  }
+
+  /** Whether the wand selects with a brush. Its strokes usually make up one area together. */
+  useBrush(brushes: boolean): void {
+    if (this.mode === (brushes ? "replace" : "add")) this.mode = brushes ? "add" : "replace";
+    this.wand.set({ brushes });
   }
 
   /** Adds a saved selection. Its steps can be removed one by one if it replaces the selection. */
@@ -196,7 +226,7 @@ export class Selection implements FinishedOutlines {
 
   clear(): void {
     if (this.isEmpty) return;
-    this.mode = "replace";
+    this.mode = this.wand.brushes ? "add" : "replace";
     this.active = this._clicked = null;
     this._past = [];
     this._future = [];
@@ -241,9 +271,9 @@ export class Selection implements FinishedOutlines {
   private wandChanged(): void {
     const { clicked: old, _clicked: clicked } = this;
     if (old && clicked) {
-      const part = { ...old, within: { like: this.wand.likeAt(clicked.at) } };
+      const part = { ...old, within: { like: this.wand.likeAt(clicked.at, clicked.brushed) } };
       this.steps = this.steps.map((step) => (step === old ? part : step));
-      this._clicked = { part, at: clicked.at };
+      this._clicked = { ...clicked, part };
       this._future = [];
       this._again = true;
       // While a request is running, changes wait, so a moving slider does not send one at each step.

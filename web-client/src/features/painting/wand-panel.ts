@@ -1,5 +1,5 @@
-// <strata-wand-panel>: the options of the wand: what it compares, how far it reaches, and the value
-// that it paints.
+// <strata-wand-panel>: the options of the wand: whether it selects by clicks or with a brush, what it
+// compares, how far it reaches, and the value that it paints.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -13,6 +13,7 @@ import { radioGroup } from "../../ui/radio-group";
 import { numberFieldStyles, sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import type { WandBy } from "./wand";
+import "./brush-width";
 import "./selection-panel";
 import { selectionOf } from "./selection-of";
 
@@ -51,12 +52,24 @@ export class StrataWandPanel extends LitElement {
     const { session } = this;
     const layer = session.layers.selected;
     if (!layer) return html`<p class="hint">${texts.brush.no_layer}</p>`;
-    const wand = selectionOf(session).wand;
+    const selection = selectionOf(session);
+    const { wand } = selection;
     const words = texts.wand;
     const { painting } = session;
     const { erases } = painting.brush.areas;
     return html`<h2>${texts.tools.wand}</h2>
-      <p class="hint">${words.how}</p>
+      ${radioGroup<boolean>({
+        label: words.select_with,
+        class: "segments",
+        choices: [
+          { value: false, content: words.clicks },
+          { value: true, content: words.brush },
+        ],
+        chosen: wand.brushes,
+        choose: (brushes) => selection.useBrush(brushes),
+      })}
+      <p class="hint">${wand.brushes ? words.how_brush : words.how}</p>
+      ${wand.brushes ? html`<strata-brush-width .session=${session}></strata-brush-width>` : nothing}
       <strata-selection-panel .session=${session}></strata-selection-panel>
       ${radioGroup<WandBy>({
         label: words.by,
@@ -78,15 +91,19 @@ export class StrataWandPanel extends LitElement {
         />
         <span>${words.contiguous}</span>
       </label>
-      <label class="reach">
-        <span>${words.reach}</span>
-        ${numberInput({
-          value: wand.reachMm ?? "",
-          placeholder: words.no_limit,
-          min: 0,
-          changed: (text) => this.setReach(text),
-        })}
-      </label>
+      ${
+        wand.brushes
+          ? nothing
+          : html`<label class="reach">
+              <span>${words.reach}</span>
+              ${numberInput({
+                value: wand.reachMm ?? "",
+                placeholder: words.no_limit,
+                min: 0,
+                changed: (text) => this.setReach(text),
+              })}
+            </label>`
+      }
       ${radioGroup<boolean>({
         label: texts.areas.does,
         class: "segments",

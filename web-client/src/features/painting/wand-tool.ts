@@ -1,12 +1,17 @@
 // A tap selects the surface that looks like the surface there. A drag rotates the model, because
-// the selection may continue on its far side.
+// the selection may continue on its far side. With the brush, a drag selects the similar surface
+// that the brush passes.
 
 import { DragTool, type Navigator } from "../../tools/navigate";
 import type { Tool } from "../../tools/tool";
 import type { PointerSample } from "../../ui/input";
+import { type BrushHost, BrushTool } from "./brush-tool";
 
 export interface WandToolHost extends Pick<Navigator, "orbit" | "pan"> {
   selectAt(sample: PointerSample): void;
+  /** Whether a drag selects with the brush. */
+  brushes(): boolean;
+  readonly brush: BrushHost;
   /** Returns the middle of the view. */
   middle(): PointerSample;
   /** Handles a key of the selection. Returns false if nothing is selected. */
@@ -16,8 +21,31 @@ export interface WandToolHost extends Pick<Navigator, "orbit" | "pan"> {
 export class WandTool extends DragTool implements Tool {
   readonly name = "wand";
 
+  private readonly _brush: BrushTool;
+
   constructor(private readonly _host: WandToolHost) {
     super({ ..._host, tap: (sample) => _host.selectAt(sample) });
+    this._brush = new BrushTool(this.name, _host.brush);
+  }
+
+  override deactivate(): void {
+    this._brush.deactivate();
+  }
+  override down(sample: PointerSample): void {
+    if (this._host.brushes()) this._brush.down(sample);
+    else super.down(sample);
+  }
+  override move(samples: PointerSample[]): void {
+    this._brush.move(samples);
+    super.move(samples);
+  }
+  override up(): void {
+    this._brush.up();
+    super.up();
+  }
+  override cancel(): void {
+    this._brush.cancel();
+    super.cancel();
   }
 
   key(key: string, shift = false): boolean {

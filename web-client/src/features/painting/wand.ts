@@ -3,8 +3,15 @@
 
 import type { Like } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
+import type { Point } from "../../net/stroke";
 
 export type WandBy = Like["by"];
+
+/** The path of a brush in the view of the compared point, and the brush's radius on the object. */
+export interface Brushed {
+  path: Point[];
+  radius_mm: number;
+}
 
 export interface WandHost {
   /** Returns the layer to paint, or null. */
@@ -34,6 +41,8 @@ export class Wand {
   /** The surface image with the colors; null: the visible ones. */
   look: number | null = null;
   contiguous = true;
+  /** Whether only the surface that a brush passes is selected. */
+  brushes = false;
   /** The maximum distance from the point in millimeters; null: no limit. */
   reachMm: number | null = null;
   private _layer: number | null = null; // with the compared values; null: the selected layer
@@ -60,7 +69,7 @@ export class Wand {
   }
 
   /** Changes what is compared, or how far the selection reaches. */
-  set(change: Partial<Pick<Wand, "by" | "look" | "contiguous" | "reachMm">>): void {
+  set(change: Partial<Pick<Wand, "by" | "look" | "contiguous" | "brushes" | "reachMm">>): void {
     Object.assign(this, change);
     this._host.changed();
   }
@@ -69,8 +78,11 @@ export class Wand {
     this._host.changed();
   }
 
-  /** The surface at this place in the contract's format. */
-  likeAt(at: Like["at"]): Like {
+  /**
+   * The surface that looks like the surface at this place, in the contract's format. With a path,
+   * only the surface that the brush passes.
+   */
+  likeAt(at: Like["at"], brushed: Brushed | null = null): Like {
     // The selection does not change when the user selects another layer to paint.
     if (this.by === "value") this._layer ??= this._host.selected()?.id ?? null;
     const { by, look, layer, tolerance, contiguous, reachMm } = this;
@@ -81,7 +93,7 @@ export class Wand {
       contiguous,
       ...(by === "value" && layer ? { layer: layer.slug } : {}),
       ...(by === "color" && look !== null ? { look } : {}),
-      ...(reachMm === null ? {} : { radius_mm: reachMm }),
+      ...(brushed ?? (reachMm === null ? {} : { radius_mm: reachMm })),
     };
   }
 }

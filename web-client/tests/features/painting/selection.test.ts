@@ -272,6 +272,52 @@ describe("the options of the wand", () => {
     expect(selection.clicked?.within.like?.tolerance).toBe(50);
   });
 
+  it("apply to the part of a brush too, which grows while the brush moves", async () => {
+    selection.useBrush(true);
+    expect(selection.mode).toBe("add");
+    selection.addSimilar([10, 10], {}, 4);
+    await answer({ texels: 1 });
+    selection.brushTo(
+      [
+        [12, 10],
+        [13, 10],
+        [19, 10],
+      ],
+      3,
+    );
+    const at = { camera: seen, x: 10, y: 10 };
+    const path = [
+      [10, 10],
+      [13, 10],
+      [19, 10],
+    ];
+    expect(likes().at(-1)).toMatchObject({ at, path, radius_mm: 4, tolerance: 12 });
+    selection.brushTo([[20, 10]], 3); // too near to the last pixel
+    await answer({ texels: 2 });
+    expect(lit).toHaveLength(2);
+    selection.wand.setTolerance(30);
+    expect(likes().at(-1)).toMatchObject({ path, tolerance: 30 });
+    selection.addSimilar([50, 50], { alt: true }, 4);
+    expect(combines()).toEqual(["add", "subtract"]);
+    selection.undo(); // a stroke is one step
+    expect(selection.steps).toHaveLength(1);
+    selection.brushTo([[99, 99]], 3);
+    expect(selection.steps).toMatchObject([{ within: { like: { path } } }]);
+    selection.clear();
+    expect(selection.mode).toBe("add");
+    selection.useBrush(false);
+    expect(selection.mode).toBe("replace");
+  });
+
+  it("of a brush have a longest path", () => {
+    selection.addSimilar([0, 0], {}, 4);
+    selection.brushTo(
+      Array.from({ length: 5000 }, (_, x): Point => [x + 1, 0]),
+      1,
+    );
+    expect(selection.clicked?.within.like?.path).toHaveLength(4096);
+  });
+
   it("send only the newest of the changes during a request", async () => {
     click();
     for (const tolerance of [3, 6, 9]) selection.wand.setTolerance(tolerance);

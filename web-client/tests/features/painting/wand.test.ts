@@ -67,6 +67,7 @@ describe("the wand", () => {
 
 describe("the tool", () => {
   let done: string[];
+  let brushes: boolean;
   let used: boolean; // whether the selection uses keys
   let tool: WandTool;
   const press = (keys = {}): void => {
@@ -76,8 +77,22 @@ describe("the tool", () => {
 
   beforeEach(() => {
     done = [];
-    used = false;
+    used = brushes = false;
     tool = new WandTool({
+      brushes: () => brushes,
+      brush: {
+        beginStroke: ({ x, alt = false }) => {
+          done.push(`brush ${x} ${alt}`);
+          return {
+            extend: (points) => void done.push(points.map(([x]) => x).join(" ")),
+            end: () => void done.push("end"),
+          };
+        },
+        strokeEnded: () => void done.push("ended"),
+        radiusPx: () => 10,
+        widthOf: () => 1,
+        nextFrame: (callback) => callback(),
+      },
       orbit: (dx, dy) => void done.push(`orbit ${dx} ${dy}`),
       pan: () => {},
       selectAt: ({ x, y, shift = false }) => void done.push(`select ${x} ${y} ${shift}`),
@@ -96,6 +111,23 @@ describe("the tool", () => {
     tool.move([{ x: 50, y: 10 }]);
     tool.up();
     expect(done).toEqual(["select 3 4 false", "select 3 4 true", "orbit 50 10"]);
+  });
+
+  it("selects what the brush passes with a drag, and ends a drag when it is left", () => {
+    brushes = true;
+    tool.down({ x: 0, y: 0, alt: true });
+    tool.move([{ x: 50, y: 10 }]);
+    tool.up();
+    expect(done).toEqual(["brush 0 true", "0", "50", "end", "ended"]);
+    tool.down({ x: 1, y: 0 });
+    tool.deactivate();
+    tool.down({ x: 2, y: 0 });
+    tool.cancel();
+    tool.move([{ x: 90, y: 10 }]);
+    expect(done.slice(5)).toEqual([
+      ...["brush 1 false", "1", "end", "ended"],
+      ...["brush 2 false", "2", "end", "ended"],
+    ]);
   });
 
   it("selects in the middle with Enter, fills with it, and adds with Shift and Enter", () => {
