@@ -69,14 +69,19 @@ Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe re
   return complete;
 }
 
+Result<jobs::ShapeLayer> shape_content(store::Store& store, room::Room& room,
+                                       const jobs::ShapeRecipe& recipe, const Layer& requested,
+                                       Progress& progress) {
+  if (recipe.kind == jobs::ShapeKind::lightness)
+    return lightness_layer(store, room, recipe, requested, progress);
+  return jobs::compute_shape_layer(store, room.model(), room.surface().geometry(), recipe,
+                                   requested.type, requested.resolution, progress);
+}
+
 Result<Layer> add_shape_layer(store::Store& store, room::Room& room, NewLayers& layers,
                               const Layer& requested, const jobs::ShapeRecipe& recipe,
                               bool has_palette, const std::string& user, Progress& progress) {
-  auto computed = STRATA_TRY(
-      recipe.kind == jobs::ShapeKind::lightness
-          ? lightness_layer(store, room, recipe, requested, progress)
-          : jobs::compute_shape_layer(store, room.model(), room.surface().geometry(), recipe,
-                                      requested.type, requested.resolution, progress));
+  auto computed = STRATA_TRY(shape_content(store, room, recipe, requested, progress));
   Layer layer = requested;
   layer.origin = LayerOrigin::shape;
   if (layer.unit.empty()) layer.unit = computed.unit;

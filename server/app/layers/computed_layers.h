@@ -18,6 +18,12 @@ namespace strata::app {
 Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe recipe,
                                        const Model& model, const Roles& roles);
 
+// Computes the content of a layer from the shape of the model, at the resolution and with the type
+// of `requested`. Blocks.
+Result<jobs::ShapeLayer> shape_content(store::Store& store, room::Room& room,
+                                       const jobs::ShapeRecipe& recipe, const Layer& requested,
+                                       Progress& progress);
+
 // Computes a layer from the shape of the model and paints it. Properties in `requested` have
 // precedence over those of the recipe. At first, only `user` can see the layer. Blocks.
 Result<Layer> add_shape_layer(store::Store& store, room::Room& room, NewLayers& layers,

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "app/edits.h"
-#include "app/layers/surface_functions.h"
+#include "app/layers/prepared_formula.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
 #include "domain/people/role.h"
@@ -33,71 +33,6 @@ bool reads_records_of(const Expression& e, const std::string& layer) {
                              [&](const Expression& part) { return reads_records_of(part, layer); });
 }
 
-std::vector<query::LayerView> views_of(const std::vector<Layer>& layers) {
-  std::vector<query::LayerView> views;
-  for (const Layer& layer : layers) views.push_back({layer, {}});
-  return views;
-}
-
-Result<TileMap> shape_tiles(store::Store& store, const room::Room& room, const std::string& name,
-                            int resolution, Progress& progress) {
-  const Model model = room.model();
-  for (const auto& [normal, axis] : {std::pair("nx", 0), std::pair("ny", 1), std::pair("nz", 2)})
-    if (name == normal)
-      return jobs::paint_normals(room.surface().geometry(), axis, resolution, progress);
-  jobs::ShapeRecipe recipe;
-  recipe.kind = name == "height"  ? jobs::ShapeKind::height
-                : name == "slope" ? jobs::ShapeKind::slope
-                                  : jobs::ShapeKind::mean_curvature;
-  auto complete = STRATA_TRY(jobs::completed(std::move(recipe), model));
-  auto shape = STRATA_TRY(jobs::compute_shape_layer(
-      store, model, room.surface().geometry(), complete, ValueType::f32, resolution, progress));
-  return std::move(shape.tiles);
-}
-
-Result<query::LayerView> shape_view(store::Store& store, const room::Room& room,
-                                    const std::string& name, int resolution, Progress& progress) {
-  auto tiles = STRATA_TRY(shape_tiles(store, room, name, resolution, progress));
-  query::LayerView view;
-  view.layer.slug = std::string(room::kShapePrefix) + name;
-  view.layer.type = ValueType::f32;
-  view.layer.resolution = resolution;
-  view.snapshot.tiles = std::move(tiles);
-  return view;
-}
-
-// The formula of a layer, with everything that is computed before the edit evaluates it.
-struct PreparedFormula {
-  Expression expression;                 // has names of `views` in place of functions
-  std::vector<query::LayerView> views;   // shape values and functions along the surface
-  std::optional<std::int64_t> sequence;  // of the state that the functions read
-  MemoryLedger::Share memory;
-};
-
-Result<PreparedFormula> prepare(const Services& services, room::Room& room, const Layer& layer,
-                                const Author& author, Progress& progress) {
-  const auto expression = STRATA_TRY(parse_formula(layer.formula->expression));
-  auto formula = STRATA_TRY(query::separate_surface_functions(expression, "expression"));
-  const auto shapes = room::shapes_read(expression, views_of(room.layers().all()));
-  const std::size_t steps = shapes.size() + formula.functions.size();
-  PreparedFormula prepared;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    progress.begin_stage(double(i) / double(steps), double(i + 1) / double(steps));
-    prepared.views.push_back(
-        STRATA_TRY(shape_view(services.store, room, shapes[i], layer.resolution, progress)));
-  }
-  if (!formula.functions.empty()) {
-    prepared.memory = STRATA_TRY(reserve_surface_functions(services, room, layer, formula));
-    // Read first: if a layer changes afterwards, the result is out of date. The functions read the
-    // applied edits. The journal writes these edits before the edit that paints the result.
-    prepared.sequence = room.edits().sequence();
-    STRATA_TRY(compute_surface_functions(services, room, layer, formula, author, prepared.views,
-                                         progress, shapes.size(), steps));
-  }
-  prepared.expression = std::move(formula.expression);
-  return prepared;
-}
-
 // Returns the sequence of the state that the computed values belong to. Functions along the surface
 // read an earlier state than the edit, if there were edits between.
 std::int64_t computed_sequence(const PreparedFormula& formula, const room::EditAnswer& done) {
@@ -111,16 +46,12 @@ bool is_condition(const Layer& layer) {
   return expression && expression->is_condition();
 }
 
-// Fits the palette to most of the values. A condition keeps its palette.
 Result<Layer> with_colors(room::Room& room, Layer layer) {
   if (is_condition(layer)) return layer;
   const auto values = STRATA_TRY(room.queries().statistics(layer.slug, {}, {.quantiles = true}));
-  if (!values.quantiles || !(values.max > values.min)) return layer;
-  jobs::ValueRange range{values.min, values.quantiles->front(), values.quantiles->back(),
-                         values.max};
-  if (!(range.high > range.low))
-    std::tie(range.low, range.high) = std::pair(range.least, range.most);
-  layer.palette = jobs::palette_of(jobs::ShapeKind::vertex_property, range);
+  auto palette = palette_of_values(values);
+  if (!palette) return layer;
+  layer.palette = std::move(*palette);
   return room.layers().update(std::move(layer));
 }
 
@@ -131,6 +62,15 @@ Result<Expression> parse_formula(const std::string& text) {
   if (number) return number;
   auto condition = query::parse_condition(text, "expression");
   return condition ? std::move(condition) : std::move(number);
+}
+
+std::optional<Palette> palette_of_values(const query::Statistics& values) {
+  if (!values.quantiles || !(values.max > values.min)) return std::nullopt;
+  jobs::ValueRange range{values.min, values.quantiles->front(), values.quantiles->back(),
+                         values.max};
+  if (!(range.high > range.low))
+    std::tie(range.low, range.high) = std::pair(range.least, range.most);
+  return jobs::palette_of(jobs::ShapeKind::vertex_property, range);
 }
 
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
@@ -176,7 +116,7 @@ Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room
   // date.
   const auto tables = STRATA_TRY(services.store.layers().table_sequences_of(layer.id));
   const Model before = room->model();
-  auto formula = STRATA_TRY(prepare(services, *room, layer, author, progress));
+  auto formula = STRATA_TRY(prepare_formula(services, *room, layer, author, progress));
   if (progress.cancelled()) return cancelled_problem();
   room::EditRequest edit{random_uuid(), author, layer.id};
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};

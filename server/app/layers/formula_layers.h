@@ -13,6 +13,10 @@
 #include "expression/expression.h"
 #include "room/room.h"
 
+namespace strata::query {
+struct Statistics;
+}
+
 namespace strata::app {
 
 // Layers that are computed by an expression over other layers (Layer::formula). All functions
@@ -21,6 +25,10 @@ namespace strata::app {
 // Parses a numeric expression or a condition. Refuses a syntax error (422 at `expression`, with the
 // position of the character).
 Result<Expression> parse_formula(const std::string& text);
+
+// Returns a palette for most of the values of a computed layer, which have quantiles, or nothing if
+// they are all equal. A condition has one color instead.
+std::optional<Palette> palette_of_values(const query::Statistics& values);
 
 // Finds the layers, the columns of their records and the properties of the surface that the text
 // names on this model. `self` is the computed layer, if it exists. `visibility` is its visibility.

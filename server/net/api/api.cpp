@@ -181,6 +181,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_timeline_routes(router_, context_);
   add_frame_routes(router_, context_);
   add_figure_routes(router_, context_);
+  add_layer_preview_routes(router_, context_);
   add_rollout_routes(router_, context_);
   add_texel_routes(router_, context_);
   add_change_routes(router_, context_);

@@ -49,6 +49,7 @@ void add_snapshot_routes(Router& router, const RouteContext& context);
 void add_timeline_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);
 void add_figure_routes(Router& router, const RouteContext& context);
+void add_layer_preview_routes(Router& router, const RouteContext& context);
 void add_rollout_routes(Router& router, const RouteContext& context);
 void add_texel_routes(Router& router, const RouteContext& context);
 void add_change_routes(Router& router, const RouteContext& context);

@@ -144,6 +144,39 @@ std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree
   return keys;
 }
 
+std::vector<std::uint8_t> picture_of_values(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                                            const Camera& camera, int columns, int rows,
+                                            const LayerView& layer) {
+  constexpr double kBare = 190;      // gray of surface without a value
+  constexpr double kDarkest = 0.35;  // share of the light where the view is grazing
+  const auto width = static_cast<std::size_t>(columns);
+  const std::size_t cells = width * static_cast<std::size_t>(rows);
+  if (Question* question = Question::current()) question->spend(cells);
+  std::vector<std::uint8_t> rgba(cells * 4, 0);
+  const std::vector<LayerView> layers{layer};
+  mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
+    for (int column = 0; column < columns; ++column) {
+      const glm::dvec2 pixel{(column + 0.5) * camera.width / columns,
+                             (row + 0.5) * camera.height / rows};
+      const auto point = pick(tree, origin, camera, pixel.x, pixel.y, layers);
+      if (!point.hit) continue;
+      const glm::dvec3 ray = ray_through_pixel(camera, pixel.x, pixel.y).direction;
+      const double facing = std::abs(glm::dot(glm::dvec3(point.normal), ray));
+      const double light = kDarkest + (1 - kDarkest) * facing;
+      const Rgba color =
+          point.values[0].valid ? color_of(layer.layer.palette, point.values[0].value) : Rgba{};
+      const double covered = color[3] / 255.0;
+      const std::size_t cell =
+          (static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)) * 4;
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        rgba[cell + channel] = static_cast<std::uint8_t>(
+            std::lround(light * std::lerp(kBare, static_cast<double>(color[channel]), covered)));
+      rgba[cell + 3] = 255;
+    }
+  });
+  return rgba;
+}
+
 std::vector<std::uint8_t> seen_selection(const mesh::SearchTree& tree, const glm::dvec3& origin,
                                          const Camera& camera, int columns, int rows,
                                          const mesh::SurfaceMap& map,

@@ -53,6 +53,12 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
 std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree,
                                                     const glm::dvec3& origin, const Camera& camera,
                                                     int columns, int rows, const LayerView& layer);
+// Returns a picture with one pixel for each cell of such a grid: the surface in the colors of the
+// layer's palette, gray where it has no value, lit from the camera, and transparent where there is
+// none. Red, green, blue and alpha. Counts one step of the current question for each cell.
+std::vector<std::uint8_t> picture_of_values(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                                            const Camera& camera, int columns, int rows,
+                                            const LayerView& layer);
 // Returns one byte for each cell of such a grid: 1 if the camera sees a texel of the selection at
 // the center of the cell. A null `selection` selects the whole surface. Counts one step of the
 // current question for each cell.

@@ -1,10 +1,13 @@
 """Records in queries, over HTTP: filters of tables, columns in conditions, and layers that are
 computed from other layers, from records and from the surface."""
+import base64
 import math
 import urllib.parse
 
 import pytest
+from support.cameras import camera_from
 from support.meshes import folded_grid
+from support.pictures import pixels
 from support.readings import dab
 from support.strata_server import wait_for
 
@@ -323,6 +326,50 @@ def test_neighborhoods(server):
     job = compute(server, "Wide", "focal_mean(bands, 50)", expect=202)
     done = server.wait_for_job(job["id"])
     assert done["state"] == "failed" and "40 texels" in done["problem"]["detail"], done
+
+
+def test_a_preview_shows_what_a_layer_would_contain(server):
+    camera = camera_from(server.get(M).json(), (0, 0, 1), 600, 600, up=(0, 1, 0))
+    grid = {"camera": camera, "width": 60, "height": 60}
+
+    def preview(expect=(200,), **layer):
+        body = {"layer": {"name": "Preview", **layer}, "picture": grid}
+        return server.ok("POST", M + "/layer-preview", body, expect=expect).json()
+
+    before = server.get(M + "/layers").json()
+    condition = "valid(pieces)"
+    near_pieces = {"expression": f"distance({condition}, 5)", "resolution": 4096}
+    seen = preview(**near_pieces)
+    lowest = server.get(M).json()["atlas"]["lowest_resolution"]
+    assert seen["resolution"] == max(1024, lowest) < 4096
+    made = compute_along(server, "Near pieces", near_pieces["expression"])
+    whole = server.get(f"{M}/layers/{made['slug']}/statistics").json()
+    near(seen["statistics"]["area_m2"], whole["area_m2"], 0.03)
+    near(seen["statistics"]["max"], whole["max"], 0.03)
+    near(seen["share"], whole["area_m2"] / select(server, "true"), 0.03)
+    server.ok("DELETE", f"{M}/layers/{made['slug']}")
+    # the picture: colors on the pieces, gray elsewhere on the sheet, transparent elsewhere
+    rows = pixels(base64.b64decode(preview(expression=condition)["picture"]), slice(0, 4))
+    shown = [pixel for row in rows for pixel in row]
+    assert len(shown) == 60 * 60
+    empty = [pixel for pixel in shown if pixel[3] == 0]
+    bare = [pixel for pixel in shown if pixel[3] and pixel[0] == pixel[1] == pixel[2]]
+    painted = [pixel for pixel in shown if pixel[3] and pixel[0] != pixel[1]]
+    assert empty and bare
+    share = select(server, condition) / select(server, "true")
+    near(len(painted) / (len(bare) + len(painted)), share, 0.15)
+    # from the shape of the model, with its unit
+    height = preview(compute={"kind": "height"})
+    assert height["unit"] == "mm" and height["palette"]["mode"] == "linear", height["unit"]
+    for layer, field in (
+        ({}, "layer"),
+        ({"expression": "valid(crcks)"}, "layer.expression"),
+        ({"expression": f"distance({condition}, -1)"}, "layer.expression"),
+        ({"compute": {"kind": "sun_hours"}}, "layer.compute.latitude_deg"),
+        ({"expression": "wet", "compute": {"kind": "height"}}, "layer.expression"),
+    ):
+        assert preview(expect=(422,), **layer)["field"] == field, layer
+    assert server.get(M + "/layers").json() == before
 
 
 def test_basins_and_water(server):

@@ -53,6 +53,33 @@ test("names are completed, and what the expression holds for is told", async ({ 
   await page.getByText(/Has a value on/).waitFor();
 });
 
+test("a preview shows the values on the object, and makes no layer", async ({ server, page }) => {
+  const before = (await server.json("GET", `${base}/layers`)).layers.length;
+  await expression_of(page).fill("distance(valid(cracks))");
+  const preview = page.locator("strata-layer-preview");
+  await button(page, w.layer_dialog.preview).click();
+  await preview.getByText(/ to .* on \d/).waitFor();
+  const picture = preview.getByRole("img", { name: w.layer_preview.picture });
+  await wait_for(
+    () => picture.evaluate((image) => image.complete && image.naturalWidth > 300),
+    "the picture",
+  );
+  await picture.scrollIntoViewIfNeeded();
+  await shot(page, "preview");
+  // a change removes it, and shows the server's problems at the expression
+  await expression_of(page).fill("distance(valid(cracks), -5)");
+  await picture.waitFor({ state: "detached" });
+  await button(page, w.layer_dialog.preview).click();
+  await page.locator("strata-expression-field").getByRole("alert").getByText(/./).waitFor();
+  await page.getByRole("radio", { name: w.layer_dialog.shape, exact: false }).click();
+  await button(page, w.layer_dialog.preview).click();
+  await preview.getByText(/ to .* on \d/).waitFor();
+  await shot(page, "preview_shape");
+  assert.equal((await server.json("GET", `${base}/layers`)).layers.length, before);
+  await page.getByRole("radio", { name: w.layer_dialog.formula }).click();
+  await expression_of(page).fill("if(valid(cracks), 2, 1)");
+});
+
 test("the layer is computed first and gets its colours then", async ({ server, page }) => {
   await page.getByLabel(w.layer_dialog.name, { exact: true }).fill("Risk");
   await shot(page, "dialog");

@@ -3536,6 +3536,26 @@ export interface SelectionPicture {
   height: number;
 }
 
+/** Preview of a computed layer. */
+export interface LayerPreviewRequest {
+  /** The layer, with `expression` or `compute`, as it would be created. */
+  layer: LayerCreate;
+  picture: SelectionPicture;
+}
+
+/** What a computed layer would contain. */
+export interface LayerPreview {
+  /** Resolution of the preview. It can be lower than that of the layer. */
+  resolution: Resolution;
+  /** Share of the surface that has a value. */
+  share: number;
+  unit: string;
+  palette: Palette;
+  statistics: Statistics;
+  /** PNG image in base64: the surface in the colors of the palette, gray where it has no value, and transparent elsewhere. */
+  picture: string;
+}
+
 /** Additional part of the statistics, which takes longer to compute. */
 export type StatisticsPart = "pieces" | "perimeter" | "quantiles";
 

@@ -653,6 +653,25 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/layer-preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Preview a computed layer */
+        post: operations["preview_layer"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/layers": {
         parameters: {
             query?: never;
@@ -2916,6 +2935,10 @@ export interface components {
         LayerOverride: wire.LayerOverride;
         /** Changes to a layer */
         LayerPatch: wire.LayerPatch;
+        /** What a computed layer would contain */
+        LayerPreview: wire.LayerPreview;
+        /** Preview of a computed layer */
+        LayerPreviewRequest: wire.LayerPreviewRequest;
         /** Quantities of each class of a layer */
         LayerQuantities: wire.LayerQuantities;
         /** Quantities of a class */
@@ -5044,6 +5067,31 @@ export interface operations {
                 content: {
                     "image/jpeg": string;
                     "image/png": string;
+                };
+            };
+        };
+    };
+    preview_layer: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LayerPreviewRequest"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LayerPreview"];
                 };
             };
         };

@@ -4229,6 +4229,43 @@ Result<void> check(const SelectionPicture& value, const std::string& field) {
   return {};
 }
 
+void read(const nlohmann::json& json, LayerPreviewRequest& value) {
+  read_member(json, "layer", value.layer);
+  read_member(json, "picture", value.picture);
+}
+
+nlohmann::json to_json(const LayerPreviewRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "layer", value.layer);
+  write_member(json, "picture", value.picture);
+  return json;
+}
+
+Result<void> check(const LayerPreviewRequest& value, const std::string& field) {
+  if (auto ok = check(value.picture, join_field(field, "picture")); !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, LayerPreview& value) {
+  read_member(json, "resolution", value.resolution);
+  read_member(json, "share", value.share);
+  read_member(json, "unit", value.unit);
+  read_member(json, "palette", value.palette);
+  read_member(json, "statistics", value.statistics);
+  read_member(json, "picture", value.picture);
+}
+
+nlohmann::json to_json(const LayerPreview& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "resolution", value.resolution);
+  write_member(json, "share", value.share);
+  write_member(json, "unit", value.unit);
+  write_member(json, "palette", value.palette);
+  write_member(json, "statistics", value.statistics);
+  write_member(json, "picture", value.picture);
+  return json;
+}
+
 void read(const nlohmann::json& json, AnalysisStatistics& value) {
   read_member(json, "layer", value.layer);
   read_optional_member(json, "where", value.where);

@@ -355,6 +355,8 @@ enum class Schema {
   WithinPart,
   Within,
   SelectionPicture,
+  LayerPreviewRequest,
+  LayerPreview,
   Analysis,
   AnalysisStep,
   AnalysisStatistics,
@@ -422,7 +424,7 @@ enum class Schema {
   SheetStroke,
   Unrolled,
 };
-constexpr int kSchemaCount = 396;
+constexpr int kSchemaCount = 398;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -3337,6 +3339,35 @@ nlohmann::json to_json(const SelectionPicture& value);
 Result<void> check(const SelectionPicture& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<SelectionPicture> = Schema::SelectionPicture;
+
+// Preview of a computed layer.
+struct LayerPreviewRequest {
+  LayerCreate layer;  // The layer, with `expression` or `compute`, as it would be created.
+  SelectionPicture picture;
+  bool operator==(const LayerPreviewRequest&) const = default;
+};
+void read(const nlohmann::json& json, LayerPreviewRequest& value);
+nlohmann::json to_json(const LayerPreviewRequest& value);
+Result<void> check(const LayerPreviewRequest& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<LayerPreviewRequest> = Schema::LayerPreviewRequest;
+
+// What a computed layer would contain.
+struct LayerPreview {
+  int resolution = 0;  // Resolution of the preview. It can be lower than that of the layer.
+  double share = 0;  // Share of the surface that has a value.
+  std::string unit;
+  nlohmann::json palette;
+  Statistics statistics;
+  // PNG image in base64: the surface in the colors of the palette, gray where it has no value, and
+  // transparent elsewhere.
+  std::string picture;
+  bool operator==(const LayerPreview&) const = default;
+};
+void read(const nlohmann::json& json, LayerPreview& value);
+nlohmann::json to_json(const LayerPreview& value);
+template <>
+inline constexpr Schema kSchemaOf<LayerPreview> = Schema::LayerPreview;
 
 // Additional part of the statistics, which takes longer to compute.
 enum class StatisticsPart { pieces, perimeter, quantiles };

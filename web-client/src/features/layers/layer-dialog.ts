@@ -28,6 +28,8 @@ import "./expression-field";
 import { classRows, newClass, withNewClass, type ClassRow } from "./class-rows";
 import { layerDialogStyles } from "./layer-dialog-styles";
 import type { StrataExpressionField } from "./expression-field";
+import "./layer-preview";
+import type { StrataLayerPreview } from "./layer-preview";
 import type { StrataDialog } from "../../ui/dialog";
 import "../../ui/labels-field";
 import type { StrataLabelsField } from "../../ui/labels-field";
@@ -73,6 +75,7 @@ export class StrataLayerDialog extends LitElement {
   @query("form") private _form!: HTMLFormElement;
   @query("strata-shape-fields") private _shape!: StrataShapeFields;
   @query("strata-expression-field") private _expression!: StrataExpressionField;
+  @query("strata-layer-preview") private _preview!: StrataLayerPreview | null;
 
   static override styles = [sharedStyles, formStyles, layerDialogStyles];
 
@@ -125,14 +128,19 @@ export class StrataLayerDialog extends LitElement {
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
       ${layer && !this._base ? html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${texts.loading}</p>` : this.form()}
+      ${this.isComputed ? html`<strata-layer-preview .session=${this.session}></strata-layer-preview>` : nothing}
       <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
       ${
         layer && (this._stale || !this._base)
           ? html`<button slot="actions" class="primary" @click=${() => void this.read(layer)}>
             ${this._stale ? words.reload : texts.try_again}
           </button>`
-          : html`<button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => this._form.requestSubmit()}>
-            ${layer ? texts.save : this._purpose === "shape" || this._purpose === "formula" ? words.compute : words.create}
+          : html`${
+              this.isComputed
+                ? html`<button slot="actions" ?disabled=${this._busy} @click=${() => void this.preview()}>${words.preview}</button>`
+                : nothing
+            }<button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => this._form.requestSubmit()}>
+            ${layer ? texts.save : this.isComputed ? words.compute : words.create}
           </button>`
       }
     </strata-dialog>`;
@@ -143,14 +151,17 @@ export class StrataLayerDialog extends LitElement {
     const layer = this._base?.layer;
     return keyed(
       this._base?.etag,
-      html`<form id="form" novalidate @submit=${this.onSubmit}>
+      html`<form id="form" novalidate @submit=${this.onSubmit} @input=${this.dropPreview}>
         ${layer ? nothing : this.kinds()}
         ${
           this._purpose === "shape"
             ? html`<strata-shape-fields
               .session=${this.session}
               .wrong=${this._problemField}
-              @kind-changed=${() => this.requestUpdate()}
+              @kind-changed=${() => {
+                this.dropPreview();
+                this.requestUpdate();
+              }}
             ></strata-shape-fields>`
             : nothing
         }
@@ -200,6 +211,35 @@ export class StrataLayerDialog extends LitElement {
         ${visibilityChoice(this._visibility, (visibility) => (this._visibility = visibility))}
       </form>`,
     );
+  }
+
+  /** Whether the dialog makes a layer whose values are computed. */
+  private get isComputed(): boolean {
+    return !this.layer && (this._purpose === "shape" || this._purpose === "formula");
+  }
+
+  /** Removes the preview, which no longer shows the chosen layer. */
+  private dropPreview(): void {
+    this._preview?.clear();
+  }
+
+  private async preview(): Promise<void> {
+    this._problem = this._problemField = "";
+    const chosen = this._purpose === "shape" ? this._shape.recipe() : null;
+    if (chosen && "problem" in chosen) return this.refuse(chosen.field, chosen.problem);
+    const expression = chosen ? "" : this._expression.value;
+    if (!chosen && expression === "") return this.refuse("expression", words.expression_missing);
+    try {
+      await this._preview?.show({
+        name: words.preview,
+        visibility: this._visibility,
+        ...(chosen ? { compute: chosen } : { expression }),
+        ...this.resolution(),
+      });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.showProblem(error, (error.problem.field ?? "").replace(/^layer\.?/, ""));
+    }
   }
 
   private kinds(): TemplateResult {
@@ -257,6 +297,7 @@ export class StrataLayerDialog extends LitElement {
         .session=${this.session}
         label=${words.expression}
         .initial=${layer?.expression ?? ""}
+        @input=${this.dropPreview}
         @submitted=${() => this._form.requestSubmit()}
       ></strata-expression-field>
       <label class="check">
@@ -322,7 +363,10 @@ export class StrataLayerDialog extends LitElement {
           content: formatLength(detailM),
         })),
         chosen: chosen ?? null,
-        choose: (resolution) => (this._chosenResolution = resolution),
+        choose: (resolution) => {
+          this.dropPreview();
+          this._chosenResolution = resolution;
+        },
       })}
       <p class="hint">${words.detail_hint}</p>
     </div>`;
@@ -439,13 +483,16 @@ export class StrataLayerDialog extends LitElement {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this._stale = error.status === 412;
-      if (error.problem.field === "expression" && this._expression) this._expression.refuse(error);
-      else if (/^(labels|descriptions)\b/.test(error.problem.field ?? ""))
-        this._labels.refuse(error.message);
-      else this.refuse(error.problem.field ?? "", this._stale ? words.changed : error.message);
+      this.showProblem(error, error.problem.field ?? "");
     } finally {
       this._busy = false;
     }
+  }
+
+  private showProblem(error: ApiError, field: string): void {
+    if (field === "expression" && this._expression) this._expression.refuse(error);
+    else if (/^(labels|descriptions)\b/.test(field)) this._labels.refuse(error.message);
+    else this.refuse(field, this._stale ? words.changed : error.message);
   }
 
   private refuse(field: string, problem: string): void {

@@ -173,7 +173,7 @@ export function valueLabel(
   return value;
 }
 
-function gradient(palette: Palette, unit: string): TemplateResult {
+export function gradient(palette: Palette, unit: string): TemplateResult {
   const span = palette.max - palette.min || 1;
   const marks = ticks(palette.min, palette.max);
   return html`<div>
