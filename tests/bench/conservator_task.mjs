@@ -1,5 +1,6 @@
-// Measures one task done in three ways in the page: a stain of known extent on a real scan is mapped
-// with the brush alone, with strokes inside and outside, and with the wand. This is not a test.
+// Measures one task done in four ways in the page: a stain of known extent on a real scan is mapped
+// with the brush alone, with strokes inside and outside, with the wand, and with its brush. This is
+// not a test.
 //
 //   STRATA_BINARY=build/release/bin/strata node tests/bench/conservator_task.mjs SCAN[:unit[:up]] [OUTPUT.json]
 //
@@ -25,6 +26,7 @@ const kPress_s = 1.1,
   kUneven_px = 1.5;
 const kFillWidth_px = 30,
   kRimWidth_px = 10,
+  kSmartWidth_px = 40,
   kBeside_px = 15; // the distance from the border of a stroke that has to stay on one side of it
 const kModel = "/models/scan";
 
@@ -172,7 +174,7 @@ class Seen {
   }
 }
 
-// --- the three ways
+// --- the four ways
 
 const selection = (page) => page.getByRole("group", { name: words.selection.title, exact: true });
 
@@ -224,13 +226,41 @@ async function by_wand(hand, seen) {
   await hand.key("Enter");
 }
 
+async function by_smart_brush(hand, seen) {
+  await hand.page.keyboard.press("v"); // not counted: the wand may still be active
+  await hand.key("Shift+G");
+  await hand.key("Shift+G");
+  await hand.click(hand.page.getByRole("radio", { name: words.wand.ways.value, exact: true }));
+  await hand.choose(
+    hand.page.getByRole("combobox", { name: words.wand.layer, exact: true }),
+    "Moisture",
+  );
+  const width = hand.page.getByRole("textbox", { name: new RegExp(`^${words.brush.width}`) });
+  await hand.fill(width, String(kSmartWidth_px));
+  // along the rim, with a quarter of the brush outside, then over the rest in one stroke
+  await hand.draw(seen.ring(kSmartWidth_px / 4, 48), kSmartWidth_px / 2);
+  const rows = [];
+  const step = 0.8 * kSmartWidth_px;
+  for (let row = step / 2; row < seen.height; row += step)
+    for (const [from, to] of seen.spans(row, kSmartWidth_px / 2))
+      rows.push(...(rows.length % 4 === 0 ? [from, to] : [to, from]).map((x) => [x, row]));
+  await hand.draw(rows, kSmartWidth_px);
+  await hand.wait(() => selected(hand.page));
+  await hand.key("Enter");
+}
+
 const selected = (page) =>
   wait_for(
     async () => /\d\s*(mm²|cm²|m²)/.test(await selection(page).getByRole("status").innerText()),
     "the area of the selection",
   );
 
-const kWays = { "brush alone": by_brush, strokes: by_strokes, wand: by_wand };
+const kWays = {
+  "brush alone": by_brush,
+  strokes: by_strokes,
+  wand: by_wand,
+  "smart brush": by_smart_brush,
+};
 
 // --- the site
 
