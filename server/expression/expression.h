@@ -143,6 +143,8 @@ struct Expression {
   bool is_text() const { return op == Op::text || op == Op::fold_case || op == Op::fold_accents; }
   bool is_column() const { return op == Op::column; }
   bool is_surface_function() const { return op >= Op::distance && op <= Op::interpolation_error; }
+  // Whether the result is always one of the values of the part: nearest values and clean-ups.
+  bool chooses_value() const { return op == Op::nearest || (op >= Op::sieve && op <= Op::closing); }
   bool operator==(const Expression&) const = default;
 };
 

@@ -46,10 +46,15 @@ bool is_condition(const Layer& layer) {
   return expression && expression->is_condition();
 }
 
+// Conditions have one color, and classes keep theirs.
+bool keeps_palette(const Layer& layer) {
+  return is_condition(layer) || layer.palette.mode == PaletteMode::categorical;
+}
+
 Result<Layer> with_colors(room::Room& room, Layer layer) {
-  if (is_condition(layer)) return layer;
+  if (keeps_palette(layer)) return layer;
   const auto values = STRATA_TRY(room.queries().statistics(layer.slug, {}, {.quantiles = true}));
-  auto palette = palette_of_values(values);
+  auto palette = palette_of_values(layer, values);
   if (!palette) return layer;
   layer.palette = std::move(*palette);
   return room.layers().update(std::move(layer));
@@ -64,8 +69,8 @@ Result<Expression> parse_formula(const std::string& text) {
   return condition ? std::move(condition) : std::move(number);
 }
 
-std::optional<Palette> palette_of_values(const query::Statistics& values) {
-  if (!values.quantiles || !(values.max > values.min)) return std::nullopt;
+std::optional<Palette> palette_of_values(const Layer& layer, const query::Statistics& values) {
+  if (keeps_palette(layer) || !values.quantiles || !(values.max > values.min)) return std::nullopt;
   jobs::ValueRange range{values.min, values.quantiles->front(), values.quantiles->back(),
                          values.max};
   if (!(range.high > range.low))

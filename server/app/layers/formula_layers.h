@@ -26,9 +26,9 @@ namespace strata::app {
 // position of the character).
 Result<Expression> parse_formula(const std::string& text);
 
-// Returns a palette for most of the values of a computed layer, which have quantiles, or nothing if
-// they are all equal. A condition has one color instead.
-std::optional<Palette> palette_of_values(const query::Statistics& values);
+// Returns a palette for most of the values of a computed layer, which have quantiles. Returns
+// nothing if the layer keeps its palette, or if all values are equal.
+std::optional<Palette> palette_of_values(const Layer& layer, const query::Statistics& values);
 
 // Finds the layers, the columns of their records and the properties of the surface that the text
 // names on this model. `self` is the computed layer, if it exists. `visibility` is its visibility.

@@ -66,11 +66,9 @@ Result<LayerPreview> preview_layer(const Services& services, room::Room& room, L
   request.quantiles = true;
   request.threads = mesh::background_threads();
   preview.statistics = query::statistics(view, *map, geometry->origin, model.metres(), request);
-  if (preview.layer.formula && !has_palette) {
-    const auto expression = STRATA_TRY(parse_formula(preview.layer.formula->expression));
-    if (auto fitted = palette_of_values(preview.statistics); fitted && !expression.is_condition())
+  if (preview.layer.formula && !has_palette)
+    if (auto fitted = palette_of_values(preview.layer, preview.statistics))
       preview.layer.palette = std::move(*fitted);
-  }
   view.layer.palette = preview.layer.palette;
   const double whole_m2 = map->area_total * model.metres() * model.metres();
   if (whole_m2 > 0) preview.share = std::min(1.0, preview.statistics.area_m2 / whole_m2);

@@ -66,7 +66,9 @@ class SurfaceFunctionValues {
     query::LayerView result;
     result.layer.slug = requested.slug;
     result.layer.resolution = layer_.resolution;
-    result.layer.type = keeps_type(requested.function) ? type_of(argument, views) : ValueType::f32;
+    // f32 does not hold all keys
+    result.layer.type =
+        requested.function.chooses_value() ? type_of(argument, views) : ValueType::f32;
     auto values = STRATA_TRY(
         argument.is_condition()
             ? of_condition(bound, requested.function, progress, stage)
@@ -82,12 +84,6 @@ class SurfaceFunctionValues {
   static constexpr std::uint32_t kTrue = std::bit_cast<std::uint32_t>(1.0f);
 
   static bool is_cleanup(Op op) { return op >= Op::sieve && op <= Op::closing; }
-
-  // A layer keeps its type if the function chooses between its values, because f32 does not hold
-  // all keys.
-  static bool keeps_type(const Expression& function) {
-    return function.op == Op::nearest || is_cleanup(function.op);
-  }
 
   Result<query::SurfaceValues> of_condition(const room::BoundForLayer& condition,
                                             const Expression& function, Progress& progress,

@@ -423,9 +423,14 @@ def test_cleanups(server):
     speck = "(x between 10 and 12 and y between 10 and 12)"
     hole = "(x between 70 and 72 and y between 40 and 42)"
     line = "(x between 30 and 31)"
-    compute(
-        server, "Raw", f"case when {speck} or {line} then 1 when x > 50 and not {hole} then 2 end"
-    )
+    points = [{"at": 1, "color": "#d55e00ff", "label": "A"}, {"at": 2, "color": "#0072b2ff"}]
+    classes = compute(
+        server,
+        "Raw",
+        f"case when {speck} or {line} then 1 when x > 50 and not {hole} then 2 end",
+        type="u8",
+        palette={"mode": "categorical", "points": points},
+    )["palette"]
     places = {"speck": (11, 11), "hole": (71, 41), "line": (30.5, 80), "area": (60, 60)}
     raw = {"speck": 1, "hole": None, "line": 1, "area": 2}
     for name, expression, changed in (
@@ -434,7 +439,8 @@ def test_cleanups(server):
         ("Both", "fill_holes(sieve(raw, 9), 9)", {"speck": None, "hole": 2}),
         ("Smooth", "majority(raw, 1.5)", {"line": None}),
     ):
-        compute_along(server, name, expression)
+        layer = compute_along(server, name, expression)
+        assert (layer["type"], layer["palette"]) == ("u8", classes), layer
         for place, right in (raw | changed).items():
             read = value(server, name.lower(), *places[place])
             assert (read["value"] if read["valid"] else None) == right, (expression, place, read)

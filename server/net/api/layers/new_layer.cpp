@@ -12,6 +12,21 @@
 namespace strata::net {
 namespace {
 
+// Returns the layer whose values the expression cleans up or continues, such as
+// `majority(materials, 5)`, or null. Its type, its unit and its classes are those of the result.
+const Layer* source_of_values(const Expression& expression, const std::vector<Layer>& others) {
+  if (expression.chooses_value()) return source_of_values(expression.parts.front(), others);
+  if (expression.op != Expression::Op::layer) return nullptr;
+  const auto found = std::ranges::find(others, expression.name, &Layer::slug);
+  return found != others.end() && found->kind == LayerKind::numeric ? &*found : nullptr;
+}
+const Layer* source_of_values(const protocol::LayerCreate& body, const std::vector<Layer>& others) {
+  if (!body.expression) return nullptr;
+  const auto expression = app::parse_formula(*body.expression);
+  return expression && expression->chooses_value() ? source_of_values(*expression, others)
+                                                   : nullptr;
+}
+
 Result<Palette> palette_of(const std::optional<nlohmann::json>& requested, ValueType type,
                            bool categorical) {
   if (!requested) return default_palette(type, categorical);
@@ -70,7 +85,10 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
   auto slug = STRATA_TRY(slug_of(body.slug, body.name));
   layer.slug = slug;
   layer.kind = body.kind;
-  layer.type = body.type.value_or(computes_numbers(body) ? ValueType::f32 : ValueType::u8);
+  const Layer* source = source_of_values(body, others);
+  layer.type = body.type.value_or(source                   ? source->type
+                                  : computes_numbers(body) ? ValueType::f32
+                                                           : ValueType::u8);
   const bool is_key =
       layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
@@ -90,7 +108,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
                 "Layers of this model must have at least " +
                     std::to_string(model.atlas.lowest_resolution) + " texels on each side.",
                 "resolution");
-  layer.unit = body.unit;
+  layer.unit = body.unit.empty() && source ? source->unit : body.unit;
   layer.description = body.description;
   layer.labels = body.labels.value_or(Labels());
   layer.descriptions = body.descriptions.value_or(Labels());
@@ -106,7 +124,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
       STRATA_TRY(is_condition && !body.palette
                      ? Result<Palette>(palette_of_condition(body.name))
                      : palette_of(body.palette, layer.type, layer.kind == LayerKind::database));
-  layer.palette = std::move(palette);
+  layer.palette = source && !body.palette ? source->palette : std::move(palette);
   layer.opacity = body.opacity;
   layer.blend = body.blend.value_or(LayerBlend::normal);
   // By default, a computed layer must not cover the layers that other users work with.
