@@ -602,7 +602,35 @@ PRESENCE = {
     + b"]}"
     for name, users in (("person", PERSON), ("empty", b""))
 }
+COLMAP_IMAGE = struct.pack("<I7dI", 1, 1, 0, 0, 0, 0, 0, 5, 1) + b"a.jpg\0" + struct.pack("<Q", 1)
+POSES = {  # the first byte selects the names; a line of %% is between two files
+    "colmap.txt": b"\0"
+    b"1 OPENCV 40 30 35 35 20 15 -0.05 0.02 0.003 -0.002\n\n%%\n"
+    b"1 0.9 0.1 0 0 0 0 5 1 a.jpg\n1 2 3\n",
+    "colmap.bin": b"\1"
+    + struct.pack("<QIiQQ12d", 1, 1, 6, 40, 30, 35, 35, 20, 15, 0.1, 0, 0, 0, 0, 0.1, 0, 0)
+    + b"\n%%\n"
+    + struct.pack("<Q", 1)
+    + COLMAP_IMAGE
+    + struct.pack("<ddQ", 1, 2, 3),
+    "bundle.out": b"\0# Bundle file v0.3\n1 0\n35 -0.1 0.02\n1 0 0\n0 1 0\n0 0 1\n0 0 -5\n"
+    b"\n%%\na.jpg 0 35\n",
+    "metashape.xml": b'\0<document><chunk><sensors><sensor id="0"><calibration class="adjusted">'
+    b'<resolution width="40" height="30"/><f>35</f><cx>1</cx><b1>.5</b1><k1>.1</k1><p1>.01</p1>'
+    b'</calibration></sensor></sensors><components active_id="0"><component id="0"><transform>'
+    b"<rotation>1 0 0 0 1 0 0 0 1</rotation><translation>1 2 3</translation><scale>2</scale>"
+    b'</transform></component></components><cameras><group><camera sensor_id="0" label="a">'
+    b"<transform>1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 1</transform></camera></group></cameras>"
+    b"<reference>LOCAL_CS[]</reference></chunk></document>",
+    "cameras.csv": b"\0#cameras 1\n#name,x,y,alt,heading,pitch,roll,f,px,py,k1,k2,k3,k4,t1,t2\n"
+    b"a.jpg,1,2,3,40,50,60,18,0.01,0,-0.2,0.05,0,0,0.001,0\n",
+    "camera.xmp": b"\0<x:xmpmeta><rdf:RDF><rdf:Description "
+    b'xcr:DistortionModel="division" xcr:FocalLength35mm="18" xcr:Position="1 2 3"><xcr:Rotation>'
+    b"0 1 0 1 0 0 0 0 -1</xcr:Rotation><xcr:DistortionCoeficients>0.2 0 0 0 0 0"
+    b"</xcr:DistortionCoeficients></rdf:Description></rdf:RDF></x:xmpmeta>",
+}
 for folder, seeds in (
+    ("poses", POSES),
     ("presence", PRESENCE),
     ("sign_on", SIGN_ON),
     ("provider", PROVIDER),
