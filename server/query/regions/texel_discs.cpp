@@ -1,5 +1,7 @@
 #include "query/regions/texel_discs.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -12,6 +14,10 @@ using mesh::Way;
 
 // Texels whose distance equals the radius are inside, in spite of rounding errors.
 constexpr double kRim = 1 + 1e-4;
+// Texels at the rim may be farther away than the radius by this factor before all rows are
+// measured.
+constexpr float kFits = 1.03f;
+constexpr int kFewRows = 4;
 
 }  // namespace
 
@@ -28,6 +34,7 @@ TexelDiscs::TexelDiscs(const mesh::SurfaceMap& map, const mesh::TexelGraph& grap
       texels_in_radius_(radius / mean_texel_size(map)),
       // of the texels in a flat disc, with some more at its rim
       disc_area_(std::numbers::pi * std::pow(radius + mean_texel_size(map) / 2, 2)),
+      squared_radius_(static_cast<float>(radius_ * radius_)),
       // At places where texels are much smaller than the mean
       balls_(map, graph, radius_,
              256 + static_cast<std::size_t>(4 * std::numbers::pi * texels_in_radius_ *
@@ -74,13 +81,41 @@ std::optional<TexelDiscs::Ellipse> TexelDiscs::ellipse_around(std::uint32_t texe
   if (rows > kMaxRows) return std::nullopt;
   const auto block = static_cast<int>(map_.block_of_slot[texel / 64]),
              i = static_cast<int>(texel % 64);
-  return Ellipse{radius_,
-                 shear,
-                 height_squared,
-                 xx,
-                 block % map_.blocks_per_side * kBlockSize + i % kBlockSize,
-                 block / map_.blocks_per_side * kBlockSize + i / kBlockSize,
-                 static_cast<int>(rows)};
+  Ellipse ellipse{radius_,
+                  shear,
+                  height_squared,
+                  xx,
+                  block % map_.blocks_per_side * kBlockSize + i % kBlockSize,
+                  block / map_.blocks_per_side * kBlockSize + i / kBlockSize,
+                  static_cast<int>(rows),
+                  map_.position(texel / 64, static_cast<int>(texel % 64))};
+  // A measurement of all rows of a small ellipse takes no longer.
+  ellipse.measures_rows = ellipse.rows < kFewRows || is_too_large(ellipse);
+  return ellipse;
+}
+
+// Reads few texels, because reading positions takes a large part of the time of a small disc.
+bool TexelDiscs::is_too_large(const Ellipse& ellipse) const {
+  constexpr double kDiagonal = std::numbers::sqrt2 / 2;
+  constexpr std::array<std::array<double, 2>, 8> kWays{{{1, 0},
+                                                        {-1, 0},
+                                                        {0, 1},
+                                                        {0, -1},
+                                                        {kDiagonal, kDiagonal},
+                                                        {-kDiagonal, -kDiagonal},
+                                                        {kDiagonal, -kDiagonal},
+                                                        {-kDiagonal, kDiagonal}}};
+  const double columns = radius_ / std::sqrt(ellipse.width_squared),
+               rows = radius_ / std::sqrt(ellipse.height_squared);
+  return std::ranges::any_of(kWays, [&](const auto& way) {
+    const int dy = static_cast<int>(way[1] * rows),
+              dx = static_cast<int>(way[0] * columns - ellipse.shear * dy);
+    const int x = ellipse.x + dx, y = ellipse.y + dy;
+    if (x < 0 || y < 0 || x >= map_.resolution || y >= map_.resolution) return true;
+    const std::uint32_t at_rim = texel_in_atlas(map_, x, y);
+    return at_rim == kNoNeighbour ||
+           !is_within(at_rim, ellipse.center, kFits * kFits * squared_radius_);
+  });
 }
 
 // Returns whether two adjacent rows are connected at a column of both chords.
