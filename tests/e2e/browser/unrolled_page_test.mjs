@@ -208,7 +208,7 @@ test("an enlarged picture has more pixels, and can be painted", async () => {
   const before = await width();
   await radio(ada, "2 ×").click();
   await wait_for(async () => (await width()) > 1.9 * before, "a larger picture");
-  const canvas = dialog(ada).locator("strata-rollout-canvas");
+  const canvas = dialog(ada).locator("strata-picture-canvas");
   await canvas.scrollIntoViewIfNeeded();
   const box = await canvas.boundingBox();
   await ada.page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);

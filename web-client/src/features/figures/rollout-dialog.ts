@@ -13,6 +13,10 @@ import { ApiError } from "../../net/api-error";
 import { followSession } from "../../session/follow-session";
 import { describeValue } from "../../session/layer-values";
 import type { ModelSession } from "../../session/model-session";
+import "../../session/picture/picture-canvas";
+import type { StrataPictureCanvas } from "../../session/picture/picture-canvas";
+import type { DrawnPart, PicturePart, PictureTool } from "../../session/picture/picture-drawing";
+import { PicturePainting } from "../../session/picture/picture-painting";
 import { texts } from "../../texts";
 import "../../ui/dialog";
 import { icon } from "../../ui/icons";
@@ -21,8 +25,6 @@ import { numberInput } from "../../ui/number-input";
 import { radioGroup } from "../../ui/radio-group";
 import { saveBlob } from "../../ui/save-from";
 import { formStyles, sharedStyles } from "../../ui/styles";
-import "./rollout-canvas";
-import type { StrataRolloutCanvas } from "./rollout-canvas";
 import { rolloutFields, rolloutNumber, rolloutStyles } from "./rollout-fields";
 import {
   kNewRollout,
@@ -31,12 +33,11 @@ import {
   wrongField,
   type RolloutInput,
 } from "./rollout-request";
-import { isSameSheet, type SheetPart, type SheetTool } from "./sheet-drawing";
-import { SheetPainting } from "./sheet-painting";
+import { isSameSheet, sheetOrigin, withinSheet } from "./rollout-sheet";
 
 const words = texts.rollouts;
 const kWaitMs = 350; // delay after the last key press
-const kTools: readonly SheetTool[] = ["move", "brush", "area"];
+const kTools: readonly PictureTool[] = ["move", "brush", "area"];
 const kZooms = [1, 2, 4] as const;
 
 @customElement("strata-rollout-dialog")
@@ -48,15 +49,15 @@ export class StrataRolloutDialog extends LitElement {
   @state() private _problem = "";
   @state() private _isDrawing = false;
   @state() private _isSaving = false;
-  @state() private _tool: SheetTool = "move";
+  @state() private _tool: PictureTool = "move";
   @state() private _zoom: (typeof kZooms)[number] = 1;
   @state() private _width = ""; // of the brush, as typed
-  @query("strata-rollout-canvas") private _canvas!: StrataRolloutCanvas | null;
+  @query("strata-picture-canvas") private _canvas!: StrataPictureCanvas | null;
   // The sheet of the picture, and the width of its pixels.
-  private _shown: { sheet: RolloutSheet; pixelMm: number } | null = null;
+  private _shown: { sheet: RolloutSheet; origin: [number, number]; pixelMm: number } | null = null;
   private _timer = 0;
   private _asked: AbortController | null = null;
-  private _painting!: SheetPainting;
+  private _painting!: PicturePainting;
 
   constructor() {
     super();
@@ -99,7 +100,7 @@ export class StrataRolloutDialog extends LitElement {
     const { session } = this;
     this._input = session.figures.draft.rollout ?? kNewRollout;
     this._width = typedNumber(session.painting.brush.width.mm);
-    this._painting = new SheetPainting({
+    this._painting = new PicturePainting({
       api: session.api,
       modelId: session.modelId,
       target: (erases) => session.painting.areaTarget(erases),
@@ -141,18 +142,20 @@ export class StrataRolloutDialog extends LitElement {
     <figure aria-busy=${this._isDrawing}>
       ${
         shown
-          ? html`<strata-rollout-canvas
+          ? html`<strata-picture-canvas
               class=${this._tool === "move" ? "idle" : ""}
               .picture=${picture}
-              .sheet=${shown.sheet}
-              .mmPerPixel=${shown.pixelMm}
+              .alt=${words.alt}
+              .label=${words.paint_on}
+              .origin=${shown.origin}
+              .unitPerPixel=${shown.pixelMm}
               .tool=${this.tool}
-              .radiusMm=${readNumber(this._width) / 2}
+              .radius=${readNumber(this._width) / 2}
               .waiting=${this._painting.waiting}
               .color=${this.color}
               ?zoomed=${this._zoom > 1}
-              @drawn=${(event: CustomEvent<SheetPart>) => this._painting.paint(shown.sheet, { part: event.detail, color: this.color })}
-            ></strata-rollout-canvas>`
+              @drawn=${(event: CustomEvent<PicturePart>) => this.paint(shown.sheet, { part: event.detail, color: this.color })}
+            ></strata-picture-canvas>`
           : nothing
       }
       ${this._isDrawing ? html`<p role="status">${words.drawing}</p>` : nothing}
@@ -213,6 +216,14 @@ export class StrataRolloutDialog extends LitElement {
       ${tool === "move" ? nothing : html`<p class="hint">${this.paints} ${tool === "area" ? words.area_hint : words.brush_hint}</p>`}`;
   }
 
+  private paint(sheet: RolloutSheet, drawn: DrawnPart): void {
+    const { api, modelId: model } = this.session;
+    this._painting.paint(drawn, async ({ layer, paint }) => {
+      const body = { within: withinSheet(sheet, drawn.part), into: { layer: layer.id, ...paint } };
+      return (await api.json("POST /models/{model}/select", { path: { model }, body })).edit;
+    });
+  }
+
   /** What the tools paint on which layer. */
   private get paints(): string {
     const { layers, painting, tables } = this.session;
@@ -237,11 +248,11 @@ export class StrataRolloutDialog extends LitElement {
   }
 
   /** The chosen tool, if it can be used. */
-  private get tool(): SheetTool {
+  private get tool(): PictureTool {
     return this._tool === "brush" && !this.hasWidth ? "move" : this._tool;
   }
 
-  private choose(tool: SheetTool): void {
+  private choose(tool: PictureTool): void {
     this._canvas?.discard();
     this._tool = tool;
   }
@@ -277,7 +288,7 @@ export class StrataRolloutDialog extends LitElement {
     this.session.figures.draft.rollout = input;
     this.stop();
     this._canvas?.discard();
-    this._painting.leaveSheet();
+    this._painting.leavePicture();
     if (wrongField(this._input) === null)
       this._timer = window.setTimeout(() => void this._painting.redraw(), kWaitMs);
   }
@@ -321,9 +332,12 @@ export class StrataRolloutDialog extends LitElement {
       const isSame = last !== undefined && isSameSheet(last, sheet);
       if (!isSame) {
         this._canvas?.discard();
-        this._painting.leaveSheet();
+        this._painting.leavePicture();
       }
-      this._shown = { sheet: isSame ? last : sheet, pixelMm: preview.mm_per_pixel };
+      this._shown =
+        isSame && this._shown
+          ? { ...this._shown, pixelMm: preview.mm_per_pixel }
+          : { sheet, origin: sheetOrigin(sheet), pixelMm: preview.mm_per_pixel };
       this.show(URL.createObjectURL(picture));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

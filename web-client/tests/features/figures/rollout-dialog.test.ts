@@ -1,9 +1,8 @@
 import { describe, expect, it } from "vitest";
 import type { TemplateResult } from "lit";
-import type { RolloutSheet } from "../../../src/core/protocol.gen";
 import { StrataRolloutDialog } from "../../../src/features/figures/rollout-dialog";
 import { kNewRollout } from "../../../src/features/figures/rollout-request";
-import type { SheetPainting } from "../../../src/features/figures/sheet-painting";
+import type { PicturePainting } from "../../../src/session/picture/picture-painting";
 import type { ModelSession } from "../../../src/session/model-session";
 
 /** Fires an event of the outermost element of a template. */
@@ -50,12 +49,12 @@ describe("the dialog for rollouts", () => {
       renderRoot: { value: { querySelector: () => ({ discard: () => ++discarded }) } },
     });
     dialog.connectedCallback();
-    const { _painting: painting } = dialog as unknown as { _painting: SheetPainting };
+    const { _painting: painting } = dialog as unknown as { _painting: PicturePainting };
     await painting.redraw();
-    painting.paint({} as RolloutSheet, {
-      part: { strokes: [{ path: [[0, 0]], radius_mm: 1 }] },
-      color: null,
-    });
+    painting.paint(
+      { part: { stroke: { path: [[0, 0]], radius: 1 } }, color: null },
+      () => new Promise(() => {}), // takes long
+    );
     const before = discarded;
     await painting.redraw();
     expect([discarded - before, painting.waiting.length]).toEqual([0, 1]);

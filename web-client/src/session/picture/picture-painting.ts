@@ -1,21 +1,21 @@
-// The edits of a user on an unrolled sheet. Each part is one edit, sent in the order of drawing.
+// The edits of a user on a picture. Each part is one edit, sent in the order of drawing.
 
-import type { RolloutSheet } from "../../core/protocol.gen";
+import type { EditResult } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
 import type { Api } from "../../net/api";
-import { withinSheet, type DrawnPart, type SheetPart } from "./sheet-drawing";
+import type { DrawnPart, PicturePart } from "./picture-drawing";
 
 /** A layer, and what an edit does in it. */
-export interface SheetTarget {
+export interface PictureTarget {
   layer: Layer;
   paint: { value: number } | { erase: true };
 }
 
-export interface SheetPaintingHost {
+export interface PicturePaintingHost {
   readonly api: Api;
   readonly modelId: string;
   /** Returns null if nothing can be painted, after showing the reason to the user. */
-  target(erases: boolean): SheetTarget | null;
+  target(erases: boolean): PictureTarget | null;
   showChange(texels: number | undefined, areaM2: number | undefined): void;
   failed(error: unknown): void;
   /** Returns whether the picture now shows all edits that were made before the call. */
@@ -23,29 +23,30 @@ export interface SheetPaintingHost {
   changed(): void;
 }
 
-export class SheetPainting {
+export class PicturePainting {
   erases = false;
   /** The parts that the picture does not show yet. */
   waiting: readonly DrawnPart[] = [];
   private readonly _edits: (() => Promise<void>)[] = [];
-  private readonly _made = new Set<SheetPart>();
+  private readonly _made = new Set<PicturePart>();
   private _isSending = false;
 
-  constructor(private readonly _host: SheetPaintingHost) {}
+  constructor(private readonly _host: PicturePaintingHost) {}
 
-  /** Paints or erases a part of this sheet. The part keeps its color while it is waiting. */
-  paint(sheet: RolloutSheet, { part, color }: DrawnPart): void {
+  /**
+   * Paints or erases a part, which `send` does on the server. The part keeps its color while it is
+   * waiting.
+   */
+  paint(
+    { part, color }: DrawnPart,
+    send: (target: PictureTarget) => Promise<EditResult | undefined>,
+  ): void {
     const target = this._host.target(this.erases);
     if (!target) return;
     this.waiting = [...this.waiting, { part, color }];
-    const { api, modelId: model } = this._host;
     this.add(async () => {
-      const body = {
-        within: withinSheet(sheet, part),
-        into: { layer: target.layer.id, ...target.paint },
-      };
       try {
-        const { edit } = await api.json("POST /models/{model}/select", { path: { model }, body });
+        const edit = await send(target);
         this._host.showChange(edit?.texels_changed, edit?.area_m2);
         this._made.add(part);
       } catch (error) {
@@ -70,8 +71,8 @@ export class SheetPainting {
     );
   }
 
-  /** Forgets the parts of an earlier sheet. They are still sent. */
-  leaveSheet(): void {
+  /** Forgets the parts of an earlier picture. They are still sent. */
+  leavePicture(): void {
     this.forget(this.waiting.map(({ part }) => part));
   }
 
@@ -82,7 +83,7 @@ export class SheetPainting {
     this._host.changed();
   }
 
-  private forget(parts: readonly SheetPart[]): void {
+  private forget(parts: readonly PicturePart[]): void {
     this.waiting = this.waiting.filter(({ part }) => !parts.includes(part));
     for (const part of parts) this._made.delete(part);
   }

@@ -1,28 +1,19 @@
 import { describe, expect, it } from "vitest";
-import type { RolloutSheet } from "../../../src/core/protocol.gen";
-import { StrataRolloutCanvas } from "../../../src/features/figures/rollout-canvas";
-import type { SheetPart, SheetTool } from "../../../src/features/figures/sheet-drawing";
-import { texts } from "../../../src/texts";
+import { StrataPictureCanvas } from "../../../src/session/picture/picture-canvas";
+import type { PicturePart, PictureTool } from "../../../src/session/picture/picture-drawing";
 
-const kSheet = {
-  left: 0,
-  top: 0.1,
-  units_per_pixel: 0.001,
-  mm_per_pixel: 1,
-} as unknown as RolloutSheet;
-
-/** A canvas in a page without a layout. Its picture is 100 × 100 CSS pixels and millimeters large. */
+/** A canvas in a page without a layout. Its picture is 100 × 100 CSS pixels and units large. */
 class Page {
-  readonly canvas = new StrataRolloutCanvas();
-  readonly drawn: SheetPart[] = [];
+  readonly canvas = new StrataPictureCanvas();
+  readonly drawn: PicturePart[] = [];
 
-  constructor(tool: SheetTool) {
+  constructor(tool: PictureTool) {
     const { canvas } = this;
     const img = { getBoundingClientRect: () => ({ left: 0, top: 0, width: 100, height: 100 }) };
     Object.defineProperty(canvas, "renderRoot", { value: { querySelector: () => img } });
-    Object.assign(canvas, { sheet: kSheet, tool });
+    Object.assign(canvas, { origin: [0, 100], tool, label: "Paint", alt: "A wall" });
     canvas.addEventListener("drawn", (event) =>
-      this.drawn.push((event as CustomEvent<SheetPart>).detail),
+      this.drawn.push((event as CustomEvent<PicturePart>).detail),
     );
     this.load();
   }
@@ -65,16 +56,16 @@ class Page {
   }
 }
 
-const dab = (x: number, y: number): SheetPart => ({
-  strokes: [{ path: [[x, y]], radius_mm: 1 }],
+const dab = (x: number, y: number): PicturePart => ({
+  stroke: { path: [[x, y]], radius: 1 },
 });
 
-describe("the canvas of a rollout", () => {
+describe("the canvas of a picture", () => {
   it("does not draw until a picture of another size is loaded", () => {
     const page = new Page("brush");
     page.click(10, 20);
-    page.canvas.mmPerPixel = 0.5;
-    page.canvas.willUpdate(new Map([["mmPerPixel", 1]]));
+    page.canvas.unitPerPixel = 0.5;
+    page.canvas.willUpdate(new Map([["unitPerPixel", 1]]));
     page.click(30, 40);
     page.load(200);
     page.click(50, 60);
@@ -84,14 +75,14 @@ describe("the canvas of a rollout", () => {
   it("discards an open stroke if the size of the picture changes", () => {
     const page = new Page("brush");
     page.at("pointerdown", 10, 20);
-    page.canvas.willUpdate(new Map([["mmPerPixel", 1]]));
+    page.canvas.willUpdate(new Map([["unitPerPixel", 1]]));
     page.load();
     page.at("pointermove", 30, 20);
     page.at("pointerup");
     expect(page.drawn).toEqual([]);
   });
 
-  it("continues a stroke on a newer picture of the same sheet", () => {
+  it("continues a stroke on a newer picture of the same place", () => {
     const page = new Page("brush");
     page.at("pointerdown", 10, 20);
     page.canvas.willUpdate(new Map([["picture", "blob:1"]]));
@@ -127,12 +118,10 @@ describe("the canvas of a rollout", () => {
     expect(page.key("Enter")).toBe(true);
     expect(page.drawn).toEqual([
       {
-        polygons: [
-          [
-            [0, 100],
-            [90, 100],
-            [90, 10],
-          ],
+        polygon: [
+          [0, 100],
+          [90, 100],
+          [90, 10],
         ],
       },
     ]);
@@ -140,8 +129,8 @@ describe("the canvas of a rollout", () => {
 
   it("has one label", () => {
     const drawing = new Page("area");
-    expect(drawing.attribute("aria-label")).toBe(texts.rollouts.paint_on);
+    expect(drawing.attribute("aria-label")).toBe("Paint");
     expect(drawing.attribute("alt")).toBe("");
-    expect(new Page("move").attribute("alt")).toBe(texts.rollouts.alt);
+    expect(new Page("move").attribute("alt")).toBe("A wall");
   });
 });

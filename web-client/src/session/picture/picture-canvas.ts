@@ -1,47 +1,51 @@
-// <strata-rollout-canvas>: the picture of an unrolled sheet, on which the user draws with the brush
-// or areas. Its event `drawn` contains a finished part. Drawn parts stay visible over the picture
-// while they are in `waiting`.
+// <strata-picture-canvas>: a picture on which the user draws with the brush or areas, such as an
+// unrolled sheet or a photograph. Its event `drawn` contains a finished part. Drawn parts stay visible
+// over the picture while they are in `waiting`.
 
 import { css, html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import type { RolloutSheet, SheetPoint } from "../../core/protocol.gen";
 import { sharedStyles } from "../../ui/styles";
-import { texts } from "../../texts";
 import {
-  sheetBox,
-  SheetDrawing,
+  PictureDrawing,
   type DrawnPart,
-  type SheetBox,
-  type SheetPart,
-  type SheetTool,
-} from "./sheet-drawing";
+  type PictureBox,
+  type PicturePart,
+  type PicturePoint,
+  type PictureTool,
+} from "./picture-drawing";
 
 const kSnapPx = 10; // CSS pixels
 
-@customElement("strata-rollout-canvas")
-export class StrataRolloutCanvas extends LitElement {
+@customElement("strata-picture-canvas")
+export class StrataPictureCanvas extends LitElement {
   /** The address of the picture. */
   @property() picture = "";
-  @property({ attribute: false }) sheet!: RolloutSheet;
-  /** The width of a pixel of this picture on the object. */
-  @property({ attribute: false }) mmPerPixel = 1;
-  @property() tool: SheetTool = "move";
-  @property({ attribute: false }) radiusMm = 1;
+  /** What the picture shows. */
+  @property() alt = "";
+  /** The name of the place where the user draws. */
+  @property() label = "";
+  /** The place of the upper left corner, in the unit of the drawing. */
+  @property({ attribute: false }) origin: PicturePoint = [0, 0];
+  /** The width of a pixel of this picture, in the same unit. */
+  @property({ attribute: false }) unitPerPixel = 1;
+  @property() tool: PictureTool = "move";
+  /** The radius of the brush, in the same unit. */
+  @property({ attribute: false }) radius = 1;
   @property({ attribute: false }) waiting: readonly DrawnPart[] = [];
   /** The color of the open stroke. Null if it erases. */
   @property({ attribute: false }) color: string | null = null;
   /** Whether the picture has its own size, and is scrolled. */
   @property({ type: Boolean, reflect: true }) zoomed = false;
   @state() private _size: readonly [number, number] = [0, 0]; // of the picture
-  @state() private _hover: SheetPoint | null = null;
+  @state() private _hover: PicturePoint | null = null;
   @query("img") private _img!: HTMLImageElement | null;
 
-  private readonly _drawing = new SheetDrawing({
+  private readonly _drawing = new PictureDrawing({
     tool: () => this.tool,
-    radiusMm: () => this.radiusMm,
-    snapMm: () => kSnapPx * this.mmPerCssPixel(),
+    radius: () => this.radius,
+    snap: () => kSnapPx * this.unitPerCssPixel(),
     finished: (part) =>
-      void this.dispatchEvent(new CustomEvent<SheetPart>("drawn", { detail: part })),
+      void this.dispatchEvent(new CustomEvent<PicturePart>("drawn", { detail: part })),
     changed: () => this.requestUpdate(),
   });
 
@@ -95,7 +99,7 @@ export class StrataRolloutCanvas extends LitElement {
 
   override willUpdate(changed: PropertyValues): void {
     // A picture of the same place has the same size, so the user can continue to draw.
-    if (!changed.has("sheet") && !changed.has("mmPerPixel")) return;
+    if (!changed.has("origin") && !changed.has("unitPerPixel")) return;
     this._size = [0, 0]; // unknown until the new picture is loaded
     this._drawing.cancelPress();
   }
@@ -106,7 +110,7 @@ export class StrataRolloutCanvas extends LitElement {
         class="sheet ${draws ? "draws" : ""}"
         tabindex=${draws ? 0 : nothing}
         role=${draws ? "application" : nothing}
-        aria-label=${draws ? texts.rollouts.paint_on : nothing}
+        aria-label=${draws ? this.label : nothing}
         @pointerdown=${this.onDown}
         @pointermove=${this.onMove}
         @pointerup=${this.onUp}
@@ -115,7 +119,7 @@ export class StrataRolloutCanvas extends LitElement {
         @keydown=${this.onKey}
         @dragstart=${(event: Event) => event.preventDefault()}
       >
-        <img src=${this.picture} alt=${draws ? "" : texts.rollouts.alt} @load=${this.onLoad} />
+        <img src=${this.picture} alt=${draws ? "" : this.alt} @load=${this.onLoad} />
         ${this._size[0] > 0 ? this.overlay() : nothing}
       </div>`;
   }
@@ -123,13 +127,13 @@ export class StrataRolloutCanvas extends LitElement {
   private overlay(): TemplateResult {
     const { left, top, width, height } = this.box;
     const { path } = this._drawing;
-    const snap = kSnapPx * this.mmPerCssPixel();
+    const snap = kSnapPx * this.unitPerCssPixel();
     const open: readonly DrawnPart[] =
       path.length > 0 && this.tool === "brush"
-        ? [{ part: { strokes: [{ path, radius_mm: this.radiusMm }] }, color: this.color }]
+        ? [{ part: { stroke: { path, radius: this.radius } }, color: this.color }]
         : [];
     const points = pointsOf(path);
-    // y points up on the sheet, and down in SVG.
+    // y points up in the drawing, and down in SVG.
     return html`<svg aria-hidden="true" preserveAspectRatio="none" viewBox="${left} ${-top} ${width} ${height}">
       ${[...this.waiting, ...open].map(shapeOf)}
       ${
@@ -141,19 +145,21 @@ export class StrataRolloutCanvas extends LitElement {
       }
       ${
         this._hover && this.tool === "brush"
-          ? svg`<circle cx=${this._hover[0]} cy=${-this._hover[1]} r=${this.radiusMm} fill="none" stroke="var(--mark-dark)" stroke-width=${snap * 0.1} />`
+          ? svg`<circle cx=${this._hover[0]} cy=${-this._hover[1]} r=${this.radius} fill="none" stroke="var(--mark-dark)" stroke-width=${snap * 0.1} />`
           : nothing
       }
     </svg>`;
   }
 
-  private get box(): SheetBox {
-    return sheetBox(this.sheet, this.mmPerPixel, this._size);
+  private get box(): PictureBox {
+    const [left, top] = this.origin;
+    const [columns, rows] = this._size;
+    return { left, top, width: columns * this.unitPerPixel, height: rows * this.unitPerPixel };
   }
 
-  private mmPerCssPixel(): number {
+  private unitPerCssPixel(): number {
     const shown = this._img?.getBoundingClientRect().width ?? 0;
-    return shown > 0 ? this.box.width / shown : this.mmPerPixel;
+    return shown > 0 ? this.box.width / shown : this.unitPerPixel;
   }
 
   private onLoad(event: Event): void {
@@ -161,7 +167,7 @@ export class StrataRolloutCanvas extends LitElement {
     this._size = [naturalWidth, naturalHeight];
   }
 
-  private pointOf({ clientX, clientY }: MouseEvent): SheetPoint {
+  private pointOf({ clientX, clientY }: MouseEvent): PicturePoint {
     const { left, top, width, height } = this.box;
     const shown = this._img!.getBoundingClientRect();
     return [
@@ -207,8 +213,10 @@ export class StrataRolloutCanvas extends LitElement {
 
 function shapeOf({ part, color: own }: DrawnPart): TemplateResult {
   const color = own ?? "var(--mark-light)";
-  return svg`${"polygons" in part ? part.polygons!.map((path) => svg`<polygon points=${pointsOf(path)} fill=${color} fill-rule="evenodd" opacity="0.7" />`) : nothing}
-    ${"strokes" in part ? part.strokes!.map(({ path, radius_mm: radius }) => svg`<polyline points=${pointsOf([path[0]!, ...path])} fill="none" stroke=${color} stroke-width=${2 * radius} stroke-linecap="round" stroke-linejoin="round" opacity="0.7" />`) : nothing}`;
+  if ("polygon" in part)
+    return svg`<polygon points=${pointsOf(part.polygon)} fill=${color} fill-rule="evenodd" opacity="0.7" />`;
+  const { path, radius } = part.stroke;
+  return svg`<polyline points=${pointsOf([path[0]!, ...path])} fill="none" stroke=${color} stroke-width=${2 * radius} stroke-linecap="round" stroke-linejoin="round" opacity="0.7" />`;
 }
 
 const pointsOf = (path: readonly (readonly number[])[]): string =>
@@ -216,6 +224,6 @@ const pointsOf = (path: readonly (readonly number[])[]): string =>
 
 declare global {
   interface HTMLElementTagNameMap {
-    "strata-rollout-canvas": StrataRolloutCanvas;
+    "strata-picture-canvas": StrataPictureCanvas;
   }
 }

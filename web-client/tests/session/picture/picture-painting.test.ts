@@ -1,21 +1,12 @@
 import { describe, expect, it } from "vitest";
-import type { RolloutSheet } from "../../../src/core/protocol.gen";
 import type { Layer } from "../../../src/core/types";
 import type { Api } from "../../../src/net/api";
-import { SheetPainting } from "../../../src/features/figures/sheet-painting";
-import type { DrawnPart } from "../../../src/features/figures/sheet-drawing";
+import { PicturePainting } from "../../../src/session/picture/picture-painting";
+import type { DrawnPart } from "../../../src/session/picture/picture-drawing";
 
 const layer = { id: 7 } as Layer;
-const sheet = {
-  axis: { point: [0, 0, 0], direction: [0, 0, 1] },
-  radius: 40,
-  shape: "cylinder",
-  side: "inside",
-  from: -180,
-  to: 180,
-} as unknown as RolloutSheet;
 const dab = (x: number, color = "red"): DrawnPart => ({
-  part: { strokes: [{ path: [[x, 0]], radius_mm: 1 }] },
+  part: { stroke: { path: [[x, 0]], radius: 1 } },
   color,
 });
 
@@ -32,7 +23,7 @@ class FakeServer {
     paint: { value: 3 },
   };
 
-  readonly painting = new SheetPainting({
+  readonly painting = new PicturePainting({
     api: {
       json: (call: string, options: { body: unknown; path: unknown }) => this.ask(call, options),
       send: (call: string, options: { body: unknown; path: unknown }) => this.ask(call, options),
@@ -48,40 +39,43 @@ class FakeServer {
     changed: () => {},
   });
 
-  private ask(call: string, { body, path }: { body: unknown; path: unknown }): Promise<unknown> {
+  paint(drawn: DrawnPart): void {
+    this.painting.paint(drawn, ({ layer, paint }) =>
+      this.ask("edit", { path: { layer: layer.id }, body: { ...drawn.part, ...paint } }),
+    );
+  }
+
+  private ask(call: string, { body, path }: { body: unknown; path: unknown }): Promise<never> {
     this.sent.push({ call, body, path });
-    return new Promise((give, fail) => this.answers.push({ give, fail }));
+    return new Promise<never>((give, fail) =>
+      this.answers.push({ give: give as (value: unknown) => void, fail }),
+    );
   }
 }
 
 const settled = (): Promise<void> => new Promise((done) => setTimeout(done));
 
-describe("painting on a sheet", () => {
+describe("painting on a picture", () => {
   it("sends one edit after the other, and then draws the picture once", async () => {
     const server = new FakeServer();
     const { painting } = server;
     const [first, second] = [dab(1), dab(2)];
-    painting.paint(sheet, first);
-    painting.paint(sheet, second);
+    server.paint(first);
+    server.paint(second);
     await settled();
     expect(painting.waiting).toEqual([first, second]);
     expect(server.sent).toEqual([
       {
-        call: "POST /models/{model}/select",
-        path: { model: "pot" },
-        body: {
-          within: {
-            unrolled: { axis: sheet.axis, radius: 40, side: "inside", cut: 180, ...first.part },
-          },
-          into: { layer: 7, value: 3 },
-        },
+        call: "edit",
+        path: { layer: 7 },
+        body: { ...first.part, value: 3 },
       },
     ]);
-    server.answers[0]!.give({ edit: { texels_changed: 5, area_m2: 0.25 } });
+    server.answers[0]!.give({ texels_changed: 5, area_m2: 0.25 });
     await settled();
     expect(server.sent.length).toBe(2);
     expect(server.redraws).toBe(0);
-    server.answers[1]!.give({ edit: { texels_changed: 0, area_m2: 0 } });
+    server.answers[1]!.give({ texels_changed: 0, area_m2: 0 });
     await settled();
     expect(server.changes).toEqual([
       [5, 0.25],
@@ -95,7 +89,7 @@ describe("painting on a sheet", () => {
     const server = new FakeServer();
     const { painting } = server;
     server.isShown = false;
-    painting.paint(sheet, dab(1));
+    server.paint(dab(1));
     server.answers[0]!.give({});
     await settled();
     expect(painting.waiting.length).toBe(1);
@@ -110,10 +104,10 @@ describe("painting on a sheet", () => {
     const server = new FakeServer();
     const { painting } = server;
     server.isShown = false;
-    painting.paint(sheet, dab(1));
+    server.paint(dab(1));
     server.answers[0]!.give({});
     await settled();
-    painting.paint(sheet, dab(2));
+    server.paint(dab(2));
     server.isShown = true;
     await painting.redraw();
     expect(painting.waiting).toEqual([dab(2)]);
@@ -121,17 +115,18 @@ describe("painting on a sheet", () => {
   });
 
   it("keeps the color in which each part was drawn", () => {
-    const { painting } = new FakeServer();
-    painting.paint(sheet, dab(1, "red"));
-    painting.paint(sheet, dab(2, "blue"));
+    const server = new FakeServer();
+    const { painting } = server;
+    server.paint(dab(1, "red"));
+    server.paint(dab(2, "blue"));
     expect(painting.waiting.map(({ color }) => color)).toEqual(["red", "blue"]);
   });
 
   it("forgets a refused part, and sends the next one", async () => {
     const server = new FakeServer();
     const { painting } = server;
-    painting.paint(sheet, dab(1));
-    painting.paint(sheet, dab(2));
+    server.paint(dab(1));
+    server.paint(dab(2));
     const refused = new Error("locked");
     server.answers[0]!.fail(refused);
     await settled();
@@ -143,10 +138,10 @@ describe("painting on a sheet", () => {
   it("erases, and sends nothing without a layer", () => {
     const server = new FakeServer();
     server.target = { layer, paint: { erase: true } };
-    server.painting.paint(sheet, dab(1));
-    expect(server.sent[0]!.body).toMatchObject({ into: { layer: 7, erase: true } });
+    server.paint(dab(1));
+    expect(server.sent[0]!.body).toMatchObject({ erase: true });
     server.target = null;
-    server.painting.paint(sheet, dab(2));
+    server.paint(dab(2));
     expect(server.painting.waiting.length).toBe(1);
   });
 
@@ -173,10 +168,10 @@ describe("painting on a sheet", () => {
     expect(server.redraws).toBe(1);
   });
 
-  it("still sends the parts of an earlier sheet, without showing them", async () => {
+  it("still sends the parts of an earlier picture, without showing them", async () => {
     const server = new FakeServer();
-    server.painting.paint(sheet, dab(1));
-    server.painting.leaveSheet();
+    server.paint(dab(1));
+    server.painting.leavePicture();
     expect(server.painting.waiting).toEqual([]);
     server.answers[0]!.give({});
     await settled();
