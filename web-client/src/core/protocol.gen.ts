@@ -2890,6 +2890,98 @@ export interface LookList {
   total: number;
 }
 
+/** Photograph with a camera pose. The pixels of the original have their origin in the upper left corner of the image as it is stored, without the turn in its Exif data. */
+export interface Photograph {
+  id: number;
+  /** Name in the export of the photogrammetry program, with folders if the program writes them. Unique in the model. */
+  name: string;
+  /** Position of the camera, in world coordinates. */
+  center: Point3;
+  /** Width of the original in pixels. Absent if neither the export nor an image states it. */
+  width?: number;
+  height?: number;
+  /** Pinhole camera of the undistorted image. `width` and `height` are the size of the undistorted image, and its longer side has at most 4096 pixels. Absent while the size of the original is unknown. */
+  camera?: Camera;
+  has_picture: boolean;
+  /** Media type of the original. Absent without an image. */
+  media_type?: "image/jpeg" | "image/png" | "image/tiff";
+  /** Size of the original. Absent without an image. */
+  bytes?: number;
+}
+
+/** Photographs of a model, sorted by name. */
+export interface PhotographList {
+  photographs: Photograph[];
+  /** Number of photographs of the model. */
+  total: number;
+  /** Number of photographs of the model that have an image. */
+  with_picture: number;
+}
+
+/** Photograph that was not added. */
+export interface RefusedPhotograph {
+  name: string;
+  /** A text for people. */
+  reason: string;
+}
+
+/** Result of an import of camera poses. */
+export interface PosesReport {
+  format: "colmap" | "metashape" | "realitycapture" | "bundler";
+  added: number;
+  /** Number of photographs that already existed and whose pose and calibration were replaced. */
+  updated: number;
+  /** The first 100 photographs that were not added. */
+  refused: RefusedPhotograph[];
+  refused_total: number;
+  /** Number of photographs that the program did not align. */
+  without_pose: number;
+  /** Number of photographs that Metashape aligned separately from the others. */
+  in_other_components: number;
+  /** The coordinate system that the export names, as WKT. Empty if it names none. */
+  coordinate_system: string;
+  /** The first 100 files that the server did not need. */
+  unused_files: string[];
+  /** Number of photographs of the model after the import. */
+  total: number;
+}
+
+/** Photographs that see a place. */
+export interface PhotographsSeeingRequest {
+  at: SurfacePlace;
+  /** Default: 50. */
+  limit?: number;
+  /** true: only photographs that have an image. Default: false. */
+  with_picture?: boolean;
+}
+
+/** Photograph that sees a place. */
+export interface SeeingPhotograph {
+  photograph: Photograph;
+  /** Pixel of the place in the original. */
+  pixel: Point2;
+  /** Pixel of the place in the window of `photograph.camera`. */
+  undistorted_pixel: Point2;
+  /** Size of a pixel of the original at the place, across the direction of view, in millimeters. */
+  mm_per_pixel: number;
+  /** Angle between the direction to the camera and the normal of the surface, in degrees. */
+  angle: number;
+  /** Distance from the camera in meters. */
+  distance_m: number;
+}
+
+/** Photographs that see a place, best first. */
+export interface PhotographsSeeing {
+  /** The point of the surface, in world coordinates. Absent if there is none at the pixel. */
+  position?: Point3;
+  normal?: Point3;
+  photographs: SeeingPhotograph[];
+  /** Number of photographs that see the place. */
+  total: number;
+  /** Number of photographs that were left out because their size in pixels is unknown. They need an image. */
+  unknown_size: number;
+}
+
 /** Comments of a model, sorted by id. */
 export interface CommentList {
   comments: Comment[];

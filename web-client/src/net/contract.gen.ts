@@ -1305,6 +1305,127 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/photograph-poses": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Import the camera poses of photographs */
+        post: operations["import_photograph_poses"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/photographs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        /** List the photographs of a model */
+        get: operations["list_photographs"];
+        put?: never;
+        /** Add the image of the photograph that has the name of a file */
+        post: operations["add_photograph_picture"];
+        /** Delete all photographs of a model */
+        delete: operations["delete_photographs"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/photographs/{photograph}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+                photograph: components["parameters"]["photograph"];
+            };
+            cookie?: never;
+        };
+        /** Get a photograph */
+        get: operations["get_photograph"];
+        put?: never;
+        post?: never;
+        /** Delete a photograph */
+        delete: operations["delete_photograph"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/photographs/{photograph}/picture": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+                photograph: components["parameters"]["photograph"];
+            };
+            cookie?: never;
+        };
+        /** Get the image of a photograph */
+        get: operations["get_photograph_picture"];
+        /** Set the image of a photograph */
+        put: operations["set_photograph_picture"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/photographs/{photograph}/undistorted": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+                photograph: components["parameters"]["photograph"];
+            };
+            cookie?: never;
+        };
+        /** Get a photograph without the distortion of its lens */
+        get: operations["get_undistorted_photograph"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/models/{model}/photographs/seeing": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Find the photographs that see a place */
+        post: operations["photographs_seeing"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/pick": {
         parameters: {
             query?: never;
@@ -3060,6 +3181,14 @@ export interface components {
          * @enum {string}
          */
         PersonState: wire.PersonState;
+        /** Photograph with a camera pose */
+        Photograph: wire.Photograph;
+        /** Photographs of a model, sorted by name */
+        PhotographList: wire.PhotographList;
+        /** Photographs that see a place, best first */
+        PhotographsSeeing: wire.PhotographsSeeing;
+        /** Photographs that see a place */
+        PhotographsSeeingRequest: wire.PhotographsSeeingRequest;
         /** Values at a pixel */
         PickRequest: wire.PickRequest;
         /** Records of the pieces of a class */
@@ -3072,6 +3201,8 @@ export interface components {
         Point2: wire.Point2;
         /** Point or direction in space */
         Point3: wire.Point3;
+        /** Result of an import of camera poses */
+        PosesReport: wire.PosesReport;
         /** Values at many points */
         PositionsRequest: wire.PositionsRequest;
         /** Values at the requested points, in the order of the request */
@@ -3136,6 +3267,8 @@ export interface components {
         RecordsCreate: wire.RecordsCreate;
         /** Result of an import of records */
         RecordsReport: wire.RecordsReport;
+        /** Photograph that was not added */
+        RefusedPhotograph: wire.RefusedPhotograph;
         /**
          * Operation on the regions of a layer
          * @enum {string}
@@ -3251,6 +3384,8 @@ export interface components {
         SectionMeasures: wire.SectionMeasures;
         /** Request to measure a section */
         SectionRequest: wire.SectionRequest;
+        /** Photograph that sees a place */
+        SeeingPhotograph: wire.SeeingPhotograph;
         /** Visible surface inside an outline */
         SeenOutline: wire.SeenOutline;
         /** Texels that differ between two states */
@@ -3714,6 +3849,7 @@ export interface components {
         model: string;
         object: number;
         offset: number;
+        photograph: number;
         project: string;
         provider: string;
         selection: string;
@@ -6312,6 +6448,280 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Job"];
+                };
+            };
+        };
+    };
+    import_photograph_poses: {
+        parameters: {
+            query?: {
+                filename?: string;
+                unit?: "mm" | "cm" | "m";
+            };
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/octet-stream": string;
+                "application/zip": string;
+                "multipart/form-data": {
+                    file?: string[];
+                };
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PosesReport"];
+                };
+            };
+        };
+    };
+    list_photographs: {
+        parameters: {
+            query?: {
+                after?: components["parameters"]["after"];
+                limit?: components["parameters"]["limit_of_all"];
+                offset?: components["parameters"]["offset"];
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PhotographList"];
+                };
+            };
+        };
+    };
+    add_photograph_picture: {
+        parameters: {
+            query: {
+                filename: string;
+            };
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "image/jpeg": string;
+                "image/png": string;
+                "image/tiff": string;
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Photograph"];
+                };
+            };
+        };
+    };
+    delete_photographs: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+        };
+    };
+    get_photograph: {
+        parameters: {
+            query?: never;
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                photograph: components["parameters"]["photograph"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Photograph"];
+                };
+            };
+        };
+    };
+    delete_photograph: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                photograph: components["parameters"]["photograph"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+        };
+    };
+    get_photograph_picture: {
+        parameters: {
+            query?: {
+                thumbnail?: 64 | 128 | 256 | 512 | 1024;
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+                "If-Range"?: string;
+                Range?: string;
+            };
+            path: {
+                model: components["parameters"]["model"];
+                photograph: components["parameters"]["photograph"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            206: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "*/*": string;
+                };
+            };
+        };
+    };
+    set_photograph_picture: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                photograph: components["parameters"]["photograph"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "image/jpeg": string;
+                "image/png": string;
+                "image/tiff": string;
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Photograph"];
+                };
+            };
+        };
+    };
+    get_undistorted_photograph: {
+        parameters: {
+            query?: {
+                width?: number;
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+                photograph: components["parameters"]["photograph"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/jpeg": string;
+                };
+            };
+        };
+    };
+    photographs_seeing: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PhotographsSeeingRequest"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PhotographsSeeing"];
                 };
             };
         };

@@ -3528,6 +3528,25 @@ nlohmann::json to_json(const VertexPropertyList& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, PhotographsSeeingRequest& value) {
+  read_member(json, "at", value.at);
+  read_optional_member(json, "limit", value.limit);
+  read_optional_member(json, "with_picture", value.with_picture);
+}
+
+nlohmann::json to_json(const PhotographsSeeingRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "at", value.at);
+  write_member(json, "limit", value.limit);
+  write_member(json, "with_picture", value.with_picture);
+  return json;
+}
+
+Result<void> check(const PhotographsSeeingRequest& value, const std::string& field) {
+  if (auto ok = check(value.at, join_field(field, "at")); !ok) return ok;
+  return {};
+}
+
 void read(const nlohmann::json& json, CommentCreate& value) {
   read_member(json, "text", value.text);
   read_member(json, "position", value.position);

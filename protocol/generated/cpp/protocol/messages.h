@@ -303,6 +303,13 @@ enum class Schema {
   VertexPropertyList,
   VertexPropertyName,
   LookList,
+  Photograph,
+  PhotographList,
+  RefusedPhotograph,
+  PosesReport,
+  PhotographsSeeingRequest,
+  SeeingPhotograph,
+  PhotographsSeeing,
   CommentList,
   ReplyList,
   CommentCreate,
@@ -424,7 +431,7 @@ enum class Schema {
   SheetStroke,
   Unrolled,
 };
-constexpr int kSchemaCount = 398;
+constexpr int kSchemaCount = 405;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -2706,6 +2713,19 @@ void read(const nlohmann::json& json, VertexPropertyList& value);
 nlohmann::json to_json(const VertexPropertyList& value);
 template <>
 inline constexpr Schema kSchemaOf<VertexPropertyList> = Schema::VertexPropertyList;
+
+// Photographs that see a place.
+struct PhotographsSeeingRequest {
+  SurfacePlace at;
+  int limit = 50;
+  bool with_picture = false;  // true: only photographs that have an image.
+  bool operator==(const PhotographsSeeingRequest&) const = default;
+};
+void read(const nlohmann::json& json, PhotographsSeeingRequest& value);
+nlohmann::json to_json(const PhotographsSeeingRequest& value);
+Result<void> check(const PhotographsSeeingRequest& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<PhotographsSeeingRequest> = Schema::PhotographsSeeingRequest;
 
 // First comment of a thread.
 struct CommentCreate {
