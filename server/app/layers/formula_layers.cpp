@@ -40,16 +40,8 @@ std::int64_t computed_sequence(const PreparedFormula& formula, const room::EditA
   return read + 1 < done.sequence ? read : done.sequence;
 }
 
-bool is_condition(const Layer& layer) {
-  const auto expression =
-      layer.formula ? parse_formula(layer.formula->expression) : fail(ErrorCode::invalid, {}, {});
-  return expression && expression->is_condition();
-}
-
-// Conditions have one color, and classes keep theirs.
-bool keeps_palette(const Layer& layer) {
-  return is_condition(layer) || layer.palette.mode == PaletteMode::categorical;
-}
+// The area of a condition, and classes, keep their colors.
+bool keeps_palette(const Layer& layer) { return layer.palette.mode == PaletteMode::categorical; }
 
 Result<Layer> with_colors(room::Room& room, Layer layer) {
   if (keeps_palette(layer)) return layer;

@@ -1,6 +1,8 @@
 #include "app/layers/layer_preview.h"
 
 #include <algorithm>
+#include <chrono>
+#include <mutex>
 #include <utility>
 
 #include "app/layers/computed_layers.h"
@@ -37,6 +39,16 @@ Result<TileMap> formula_content(const Services& services, room::Room& room, cons
                               layer.type, "expression", mesh::background_threads());
 }
 
+// Values from the shape need memory for the mesh, for other models and for source files, which
+// nothing counts. So one preview at a time computes them, and the others wait.
+Result<std::unique_lock<std::timed_mutex>> wait_for_shapes(Progress& progress) {
+  static std::timed_mutex shapes;
+  std::unique_lock lock(shapes, std::defer_lock);
+  while (!lock.try_lock_for(std::chrono::milliseconds(100)))
+    if (progress.cancelled()) return cancelled_problem();
+  return lock;
+}
+
 }  // namespace
 
 Result<LayerPreview> preview_layer(const Services& services, room::Room& room, Layer layer,
@@ -51,6 +63,7 @@ Result<LayerPreview> preview_layer(const Services& services, room::Room& room, L
   preview.layer = std::move(layer);
   query::LayerView view;
   if (recipe) {
+    const auto alone = STRATA_TRY(wait_for_shapes(progress));
     auto content =
         STRATA_TRY(shape_content(services.store, room, *recipe, preview.layer, progress));
     if (preview.layer.unit.empty()) preview.layer.unit = std::move(content.unit);

@@ -28,7 +28,8 @@ struct LayerPreview {
 
 // Computes a layer that does not exist, from its formula or from `recipe`, and changes nothing. Its
 // resolution is at most kPreviewResolution, or the lowest of the model. Returns the errors of
-// add_formula_layer and add_shape_layer. Blocks. Throws QuestionEnded if the current question ends.
+// add_formula_layer and add_shape_layer. Blocks. Fails when `progress` is cancelled, and throws
+// QuestionEnded if the current question ends.
 Result<LayerPreview> preview_layer(const Services& services, room::Room& room, Layer layer,
                                    const std::optional<jobs::ShapeRecipe>& recipe, bool has_palette,
                                    const Author& author, const room::SeenGrid& grid,

@@ -53,6 +53,9 @@ class Question : public std::enable_shared_from_this<Question> {
   // first reason.
   void end(Error why);
   bool ended() const { return ended_; }
+  // Whether the question has ended or its time has passed. Unlike check(), neither throws nor
+  // waits.
+  bool is_over() const { return ended_ || (has_deadline_ && Clock::now() - begin_ > limits_.time); }
   std::optional<Error> why() const;  // nullopt if the question has not ended
   // Removes the time limit. Call when the answer is being sent, because the speed of sending
   // depends on the client.

@@ -369,6 +369,15 @@ def test_a_preview_shows_what_a_layer_would_contain(server):
         ({"expression": "wet", "compute": {"kind": "height"}}, "layer.expression"),
     ):
         assert preview(expect=(422,), **layer)["field"] == field, layer
+    high = preview(expect=(422,), expression="300 + x", type="u8")
+    assert high["field"] == "layer.type", high
+    # it shows nothing that users of the layer could not see
+    server.ok("POST", M + "/layers", {"name": "Hidden", "visibility": "private"})
+    for visibility, status in (("public", 422), ("private", 200)):
+        preview(expect=(status,), expression="valid(hidden)", visibility=visibility)
+    server.ok("DELETE", M + "/layers/hidden")
+    nearest = preview(expression="nearest(wet)")
+    assert nearest["statistics"]["max"] == 0.75 and nearest["share"] > 0.99, nearest["share"]
     assert server.get(M + "/layers").json() == before
 
 

@@ -75,8 +75,12 @@ test("a preview shows the values on the object, and makes no layer", async ({ se
   await button(page, w.layer_dialog.preview).click();
   await preview.getByText(/ to .* on \d/).waitFor();
   await shot(page, "preview_shape");
-  assert.equal((await server.json("GET", `${base}/layers`)).layers.length, before);
+  await page.getByLabel(w.layer_dialog.name, { exact: true }).fill("Height");
+  assert.equal(await picture.count(), 1, "the name removed the preview");
+  await page.getByLabel(w.layer_dialog.name, { exact: true }).fill("");
   await page.getByRole("radio", { name: w.layer_dialog.formula }).click();
+  assert.equal(await picture.count(), 0, "the preview of another kind stayed");
+  assert.equal((await server.json("GET", `${base}/layers`)).layers.length, before);
   await expression_of(page).fill("if(valid(cracks), 2, 1)");
 });
 

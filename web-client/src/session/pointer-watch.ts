@@ -86,10 +86,11 @@ export class PointerWatch {
 
   /**
    * Returns the depth of the surface under the pointer. If it is unknown, returns the depth of the
-   * camera's target.
+   * camera's target. After a touch there is no pointer, and the camera may have moved since then.
    */
   surfaceDepth(): number {
-    return this._depth !== null && this._depth > 0 ? this._depth : this._host.camera().distance;
+    const { at, _depth: depth } = this;
+    return at && depth !== null && depth > 0 ? depth : this._host.camera().distance;
   }
 
   private onPicked(message: Picked, purpose: PickPurpose): void {

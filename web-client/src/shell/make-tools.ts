@@ -135,6 +135,12 @@ export function makeTools(session: ModelSession, host: ToolHost): ToolManager {
         host.withSelection((selection) =>
           selection.addSimilar([at.x, at.y], at, selection.wand.brushes ? radiusMm() : null),
         ),
+      active: (isActive) =>
+        isActive
+          ? host.withSelection((selection) =>
+              selection.wandIsActive(session.tools.active === "wand"),
+            )
+          : session.selection?.wandIsActive(false),
       brushes: () => session.selection?.wand.brushes ?? false,
       brush: wandBrush,
       middle,

@@ -5,6 +5,17 @@ import { count, plural } from "./count";
 import type { LaterTexts } from "./shape";
 
 export const laterTexts = {
+  picture_tools: {
+    move: "Verschieben",
+    area: "Fläche",
+    zoom: "Zoom",
+    paints: (value: string, layer: string) => `Malt „${value}“ auf „${layer}“.`,
+    wrong_width: "Geben Sie eine Breite ein, die größer als 0 ist.",
+    area_hint:
+      "Klicken Sie die Ecken an, oder zeichnen Sie einen Umriss. Ein Klick auf die erste Ecke oder die Eingabetaste schließt die Fläche. Die Rücktaste entfernt die letzte Ecke, Escape bricht ab.",
+    brush_hint: "Ziehen Sie über das Bild.",
+  },
+
   rollouts: {
     title: "Abrollung",
     lead: "Zeigt die Wand eines Gefäßes, einer Säule oder eines Gewölbes auf einem ebenen Blatt. Längen und Flächen auf dem Blatt sind die auf der angepassten Fläche.",
@@ -44,15 +55,7 @@ export const laterTexts = {
     wrong_pixel: "Geben Sie eine Breite in mm ein, die größer als 0 ist.",
     as_figure: "Als Abbildung …",
     save: "Bild speichern",
-    move: "Verschieben",
-    area: "Fläche",
-    zoom: "Zoom",
     paint_on: "Auf die abgerollte Oberfläche malen",
-    brush_hint: "Ziehen Sie über das Bild.",
-    area_hint:
-      "Klicken Sie die Ecken an, oder zeichnen Sie einen Umriss. Ein Klick auf die erste Ecke oder die Eingabetaste schließt die Fläche. Die Rücktaste entfernt die letzte Ecke, Escape bricht ab.",
-    paints: (value: string, layer: string) => `Malt „${value}“ auf „${layer}“.`,
-    wrong_width: "Geben Sie eine Breite in mm ein, die größer als 0 ist.",
   },
   report_dialog: {
     format: "Dateiformat",
@@ -416,6 +419,57 @@ export const laterTexts = {
       ["interpolation_error(", "Fehler der Interpolation: interpolation_error(Ebene, Reichweite)"],
     ],
   },
+  photographs: {
+    title: "Fotografien einer Stelle",
+    none: "Dieses Modell hat keine Fotografien mit Kameraposen.",
+    none_yet:
+      "Dieses Modell hat noch keine Fotografien mit Kameraposen. Importieren Sie sie unten.",
+    how: "Klicken Sie auf eine Stelle des Modells, um ihre Fotografien zu sehen, die besten zuerst. Auflösung und Winkel entscheiden.",
+    middle: "Mitte der Ansicht",
+    searching: "Fotografien werden gesucht …",
+    seen_by: (n: number) =>
+      n === 0
+        ? "Keine Fotografie zeigt diese Stelle."
+        : `${count(n, "Fotografie zeigt", "Fotografien zeigen")} diese Stelle.`,
+    no_place:
+      "In der Mitte der Ansicht ist keine Oberfläche. Klicken Sie auf eine Stelle des Modells.",
+    unknown_size: (n: number) =>
+      `${count(n, "Fotografie fehlt", "Fotografien fehlen")}, weil die Größe in Pixeln unbekannt ist. Fügen Sie die Bilder hinzu.`,
+    no_picture: "Noch kein Bild",
+    quality: (mm: string, degrees: string) => `${mm} mm je Pixel · ${degrees}°`,
+    counts: (total: number, pictures: number) =>
+      `${count(total, "Fotografie", "Fotografien")}, ${pictures} mit Bild`,
+    import: "Fotografien importieren",
+    import_lead:
+      "Zuerst die Kameraposen aus Metashape, COLMAP, RealityCapture oder Bundler, dann die Bilder. Bilder werden über ihre Dateinamen gefunden und bleiben unverändert.",
+    poses: "Dateien mit Kameraposen",
+    pictures: "Bilder (JPEG, PNG, TIFF)",
+    reading_poses: "Kameraposen werden gelesen …",
+    imported: (added: number, updated: number) =>
+      `${count(added, "Fotografie", "Fotografien")} hinzugefügt, ${updated} aktualisiert.`,
+    without_pose: (n: number) => `${n} ohne Pose.`,
+    refused: (n: number) => `${count(n, "Datei wurde", "Dateien wurden")} nicht angenommen:`,
+    sent: (done: number, total: number) => `${done} von ${total}`,
+    stored: (n: number) => `${count(n, "Bild", "Bilder")} hinzugefügt.`,
+    delete_all: "Alle Fotografien löschen …",
+    delete_title: (n: number) => `${count(n, "Fotografie", "Fotografien")} löschen?`,
+    delete_lead:
+      "Die Kameraposen und die Bilder werden gelöscht. Das kann nicht rückgängig gemacht werden.",
+  },
+
+  photograph: {
+    arrangement: "Fotografie und Modell",
+    over: "Modell über der Fotografie",
+    beside: "Nebeneinander",
+    opacity: "Modell",
+    alt: (name: string) => `Fotografie ${name}`,
+    model_alt: "Das Modell aus derselben Kamera",
+    paint_on: "Fotografie: hier malen",
+    undistorted:
+      "Ohne die Verzeichnung des Objektivs gezeigt, damit sie zum Modell passt. Farbe kommt auf die Oberfläche, die diese Fotografie zeigt.",
+    original: "Original",
+  },
+
   layer_preview: {
     running: "Die Vorschau wird berechnet …",
     picture: "Das Objekt in den Farben der Ebene, wie in der 3D-Ansicht",
@@ -423,6 +477,7 @@ export const laterTexts = {
     covers: (share: string) => `Bedeckt ${share} der Oberfläche.`,
     range: (from: string, to: string, unit: string, share: string) =>
       `${from} bis ${to}${unit ? ` ${unit}` : ""}, auf ${share} der Oberfläche.`,
+    legend: "Legende der Vorschau",
     coarse: "Mit weniger Details als die Ebene berechnet. Schmale Linien können fehlen.",
   },
 
@@ -935,7 +990,7 @@ export const laterTexts = {
     clicks: "Klick",
     brush: "Pinsel",
     how_brush:
-      "Malen Sie über die Oberfläche. Ausgewählt wird nur, was so aussieht wie die Oberfläche am Anfang. Alt entfernt Oberfläche. Umschalt + G wechselt zu Klicks.",
+      "Malen Sie über die Oberfläche. Der Pinsel wählt nur Oberfläche aus, die dem Anfang des Striches ähnlich sieht. Alt entfernt Oberfläche. Umschalt + G wechselt zu Klicks.",
     how: "Klicken Sie eine Stelle an, um die Oberfläche auszuwählen, die ihr gleicht. Ziehen dreht das Modell. Eingabe wählt in der Bildmitte aus, Umschalt + Eingabe fügt dort hinzu.",
     by: "Vergleichen",
     ways: { color: "Farbe", normal: "Ausrichtung", value: "Werte" },

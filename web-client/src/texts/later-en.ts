@@ -4,6 +4,17 @@ import { formatCount } from "../core/locale";
 import { count, plural } from "./count";
 
 export const laterTexts = {
+  picture_tools: {
+    move: "Move",
+    area: "Area",
+    zoom: "Zoom",
+    paints: (value: string, layer: string) => `Paints “${value}” on “${layer}”.`,
+    wrong_width: "Enter a width that is larger than 0.",
+    area_hint:
+      "Click the corners, or draw an outline. Click the first corner or press Enter to close the area. Backspace removes the last corner, Escape cancels.",
+    brush_hint: "Drag on the picture.",
+  },
+
   rollouts: {
     title: "Unrolled picture",
     lead: "Shows the wall of a vessel, column or vault on a flat sheet. Lengths and areas on the sheet are those on the fitted surface.",
@@ -43,15 +54,7 @@ export const laterTexts = {
     wrong_pixel: "Enter a width in mm that is larger than 0.",
     as_figure: "As a figure…",
     save: "Save picture",
-    move: "Move",
-    area: "Area",
-    zoom: "Zoom",
     paint_on: "Paint on the unrolled surface",
-    brush_hint: "Drag on the picture.",
-    area_hint:
-      "Click the corners, or draw an outline. Click the first corner or press Enter to close the area. Backspace removes the last corner, Escape cancels.",
-    paints: (value: string, layer: string) => `Paints “${value}” on “${layer}”.`,
-    wrong_width: "Enter a width in mm that is larger than 0.",
   },
   report_dialog: {
     format: "File format",
@@ -418,6 +421,54 @@ export const laterTexts = {
       ["interpolation_error(", "error of the interpolation: interpolation_error(layer, range)"],
     ] as [string, string][],
   },
+  photographs: {
+    title: "Photographs of a place",
+    none: "This model has no photographs with camera poses.",
+    none_yet: "This model has no photographs with camera poses yet. Import them below.",
+    how: "Click a place on the model to see its photographs, the best first. Resolution and angle decide.",
+    middle: "Middle of the view",
+    searching: "Looking for photographs…",
+    seen_by: (n: number) =>
+      n === 0
+        ? "No photograph sees this place."
+        : `${count(n, "photograph sees", "photographs see")} this place.`,
+    no_place: "There is no surface in the middle of the view. Click a place on the model.",
+    unknown_size: (n: number) =>
+      `${count(n, "photograph is", "photographs are")} left out, because the size in pixels is unknown. Add the images.`,
+    no_picture: "No image yet",
+    quality: (mm: string, degrees: string) => `${mm} mm per pixel · ${degrees}°`,
+    counts: (total: number, pictures: number) =>
+      `${count(total, "photograph", "photographs")}, ${pictures} with an image`,
+    import: "Import photographs",
+    import_lead:
+      "First the camera poses from Metashape, COLMAP, RealityCapture or Bundler, then the images. Images are found by the names of their files, and stay unchanged.",
+    poses: "Files with camera poses",
+    pictures: "Images (JPEG, PNG, TIFF)",
+    reading_poses: "Reading the camera poses…",
+    imported: (added: number, updated: number) =>
+      `${count(added, "photograph", "photographs")} added, ${updated} updated.`,
+    without_pose: (n: number) => `${n} without a pose.`,
+    refused: (n: number) => `${count(n, "file was", "files were")} not accepted:`,
+    sent: (done: number, total: number) => `${done} of ${total}`,
+    stored: (n: number) => `${count(n, "image", "images")} added.`,
+    delete_all: "Delete all photographs…",
+    delete_title: (n: number) => `Delete ${count(n, "photograph", "photographs")}?`,
+    delete_lead: "The camera poses and the images are deleted. This cannot be undone.",
+  },
+
+  photograph: {
+    arrangement: "Photograph and model",
+    over: "Model over the photograph",
+    beside: "Side by side",
+    opacity: "Model",
+    alt: (name: string) => `Photograph ${name}`,
+    model_alt: "The model from the same camera",
+    paint_on: "Photograph: paint here",
+    undistorted:
+      "Shown without the distortion of the lens, so that it fits the model. Paint applies to the surface that this photograph sees.",
+    original: "Original",
+  },
+
   layer_preview: {
     running: "Computing the preview…",
     picture: "The object in the colors of the layer, as the 3D view shows it",
@@ -425,6 +476,7 @@ export const laterTexts = {
     covers: (share: string) => `Covers ${share} of the surface.`,
     range: (from: string, to: string, unit: string, share: string) =>
       `${from} to ${to}${unit ? ` ${unit}` : ""}, on ${share} of the surface.`,
+    legend: "Legend of the preview",
     coarse: "Computed in less detail than the layer. Narrow lines can be missing.",
   },
 
@@ -923,7 +975,7 @@ export const laterTexts = {
     clicks: "Click",
     brush: "Brush",
     how_brush:
-      "Paint over the surface. Only what looks like the surface at the beginning is selected. Hold Alt to remove surface. Shift + G changes to clicks.",
+      "Paint over the surface. The brush selects only surface that looks like the beginning of the stroke. Hold Alt to remove surface. Shift + G changes to clicks.",
     how: "Click a point to select the surface that looks like it. Drag to orbit. Enter selects in the middle of the view, Shift + Enter adds it there.",
     by: "Compare",
     ways: { color: "Color", normal: "Orientation", value: "Values" },

@@ -5,6 +5,17 @@ import { countInSpanish as count, plural } from "./count";
 import type { LaterTexts } from "./shape";
 
 export const laterTexts = {
+  picture_tools: {
+    move: "Desplazar",
+    area: "Área",
+    zoom: "Zoom",
+    paints: (value: string, layer: string) => `Pinta «${value}» en «${layer}».`,
+    wrong_width: "Introduzca un ancho mayor que 0.",
+    area_hint:
+      "Haga clic en las esquinas o dibuje un contorno. Un clic en la primera esquina o la tecla Intro cierran el área. Retroceso quita la última esquina, Escape cancela.",
+    brush_hint: "Arrastre sobre la imagen.",
+  },
+
   rollouts: {
     title: "Desarrollo",
     lead: "Muestra la pared de una vasija, una columna o una bóveda en una hoja plana. Las longitudes y áreas de la hoja son las de la superficie ajustada.",
@@ -44,15 +55,7 @@ export const laterTexts = {
     wrong_pixel: "Introduzca un ancho en mm mayor que 0.",
     as_figure: "Como figura…",
     save: "Guardar imagen",
-    move: "Desplazar",
-    area: "Área",
-    zoom: "Zoom",
     paint_on: "Pintar en la superficie desarrollada",
-    brush_hint: "Arrastre sobre la imagen.",
-    area_hint:
-      "Haga clic en las esquinas o dibuje un contorno. Un clic en la primera esquina o la tecla Intro cierran el área. Retroceso quita la última esquina, Escape cancela.",
-    paints: (value: string, layer: string) => `Pinta «${value}» en «${layer}».`,
-    wrong_width: "Introduzca un ancho en mm mayor que 0.",
   },
   report_dialog: {
     format: "Formato de archivo",
@@ -419,6 +422,55 @@ export const laterTexts = {
       ["interpolation_error(", "error de la interpolación: interpolation_error(capa, alcance)"],
     ],
   },
+  photographs: {
+    title: "Fotografías de un lugar",
+    none: "Este modelo no tiene fotografías con poses de cámara.",
+    none_yet: "Este modelo aún no tiene fotografías con poses de cámara. Impórtelas abajo.",
+    how: "Haga clic en un lugar del modelo para ver sus fotografías, las mejores primero. Deciden la resolución y el ángulo.",
+    middle: "Centro de la vista",
+    searching: "Buscando fotografías…",
+    seen_by: (n: number) =>
+      n === 0
+        ? "Ninguna fotografía muestra este lugar."
+        : `${count(n, "fotografía muestra", "fotografías muestran")} este lugar.`,
+    no_place: "No hay superficie en el centro de la vista. Haga clic en un lugar del modelo.",
+    unknown_size: (n: number) =>
+      `Se ${n === 1 ? "omite" : "omiten"} ${count(n, "fotografía", "fotografías")} cuyo tamaño en píxeles se desconoce. Añada las imágenes.`,
+    no_picture: "Aún sin imagen",
+    quality: (mm: string, degrees: string) => `${mm} mm por píxel · ${degrees}°`,
+    counts: (total: number, pictures: number) =>
+      `${count(total, "fotografía", "fotografías")}, ${pictures} con imagen`,
+    import: "Importar fotografías",
+    import_lead:
+      "Primero las poses de cámara de Metashape, COLMAP, RealityCapture o Bundler, después las imágenes. Las imágenes se encuentran por los nombres de sus archivos y no se modifican.",
+    poses: "Archivos con poses de cámara",
+    pictures: "Imágenes (JPEG, PNG, TIFF)",
+    reading_poses: "Leyendo las poses de cámara…",
+    imported: (added: number, updated: number) =>
+      `${count(added, "fotografía añadida", "fotografías añadidas")}, ${updated} actualizadas.`,
+    without_pose: (n: number) => `${n} sin pose.`,
+    refused: (n: number) =>
+      `${count(n, "archivo no fue aceptado", "archivos no fueron aceptados")}:`,
+    sent: (done: number, total: number) => `${done} de ${total}`,
+    stored: (n: number) => `${count(n, "imagen añadida", "imágenes añadidas")}.`,
+    delete_all: "Eliminar todas las fotografías…",
+    delete_title: (n: number) => `¿Eliminar ${count(n, "fotografía", "fotografías")}?`,
+    delete_lead: "Se eliminan las poses de cámara y las imágenes. Esto no se puede deshacer.",
+  },
+
+  photograph: {
+    arrangement: "Fotografía y modelo",
+    over: "Modelo sobre la fotografía",
+    beside: "Lado a lado",
+    opacity: "Modelo",
+    alt: (name: string) => `Fotografía ${name}`,
+    model_alt: "El modelo desde la misma cámara",
+    paint_on: "Fotografía: pinte aquí",
+    undistorted:
+      "Se muestra sin la distorsión del objetivo para que coincida con el modelo. La pintura se aplica a la superficie que muestra esta fotografía.",
+    original: "Original",
+  },
+
   layer_preview: {
     running: "Calculando la vista previa…",
     picture: "El objeto en los colores de la capa, como en la vista 3D",
@@ -426,6 +478,7 @@ export const laterTexts = {
     covers: (share: string) => `Cubre ${share} de la superficie.`,
     range: (from: string, to: string, unit: string, share: string) =>
       `De ${from} a ${to}${unit ? ` ${unit}` : ""}, en ${share} de la superficie.`,
+    legend: "Leyenda de la vista previa",
     coarse: "Calculado con menos detalle que la capa. Pueden faltar líneas estrechas.",
   },
 
@@ -930,7 +983,7 @@ export const laterTexts = {
     clicks: "Clic",
     brush: "Pincel",
     how_brush:
-      "Pinte sobre la superficie. Solo se selecciona lo que se parece a la superficie del comienzo. Alt quita superficie. Mayús + G cambia a clics.",
+      "Pinte sobre la superficie. El pincel selecciona solo la superficie parecida al comienzo del trazo. Alt quita superficie. Mayús + G cambia a clics.",
     how: "Haga clic en un lugar para seleccionar la superficie que se le parece. Arrastre para girar. Intro selecciona en el centro de la vista, Mayús + Intro la añade allí.",
     by: "Comparar",
     ways: { color: "Color", normal: "Orientación", value: "Valores" },

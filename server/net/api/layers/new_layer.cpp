@@ -20,26 +20,11 @@ const Layer* source_of_values(const Expression& expression, const std::vector<La
   const auto found = std::ranges::find(others, expression.name, &Layer::slug);
   return found != others.end() && found->kind == LayerKind::numeric ? &*found : nullptr;
 }
-const Layer* source_of_values(const protocol::LayerCreate& body, const std::vector<Layer>& others) {
-  if (!body.expression) return nullptr;
-  const auto expression = app::parse_formula(*body.expression);
-  return expression && expression->chooses_value() ? source_of_values(*expression, others)
-                                                   : nullptr;
-}
 
 Result<Palette> palette_of(const std::optional<nlohmann::json>& requested, ValueType type,
                            bool categorical) {
   if (!requested) return default_palette(type, categorical);
   return palette_from_json(*requested);
-}
-
-// Returns false for a condition because it only paints one value where it is true.
-bool computes_numbers(const protocol::LayerCreate& body) {
-  if (body.compute && body.compute->kind == protocol::ShapeRecipeKind::significant_change)
-    return false;
-  if (!body.expression) return body.compute.has_value();
-  const auto expression = app::parse_formula(*body.expression);
-  return !expression || !expression->is_condition();
 }
 
 // Returns a palette with one class, for the texels where the condition is true.
@@ -85,10 +70,19 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
   auto slug = STRATA_TRY(slug_of(body.slug, body.name));
   layer.slug = slug;
   layer.kind = body.kind;
-  const Layer* source = source_of_values(body, others);
-  layer.type = body.type.value_or(source                   ? source->type
-                                  : computes_numbers(body) ? ValueType::f32
-                                                           : ValueType::u8);
+  std::optional<Expression> formula;  // none also for a mistake, which is told later
+  if (body.expression)
+    if (auto parsed = app::parse_formula(*body.expression)) formula = std::move(*parsed);
+  const bool is_condition = formula && formula->is_condition();
+  const bool computes_numbers =
+      body.expression
+          ? !is_condition
+          : body.compute && body.compute->kind != protocol::ShapeRecipeKind::significant_change;
+  const Layer* source =
+      formula && formula->chooses_value() ? source_of_values(*formula, others) : nullptr;
+  layer.type = body.type.value_or(source             ? source->type
+                                  : computes_numbers ? ValueType::f32
+                                                     : ValueType::u8);
   const bool is_key =
       layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
@@ -119,7 +113,6 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
                 "The server locks computed layers when it creates them. Unlock the layer "
                 "afterwards to edit it by hand.",
                 "locked");
-  const bool is_condition = body.expression && !computes_numbers(body);
   auto palette =
       STRATA_TRY(is_condition && !body.palette
                      ? Result<Palette>(palette_of_condition(body.name))

@@ -3,8 +3,10 @@
 
 #include "app/layers/formula_layers.h"
 #include "app/layers/layer_preview.h"
+#include "core/progress.h"
 #include "core/text/base64.h"
 #include "domain/layers/layer.h"
+#include "domain/people/question.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
 #include "media/picture.h"
@@ -26,6 +28,17 @@ tl::unexpected<Error> in_layer(const Error& problem) {
   return at_field(problem, problem.field.empty() ? "layer" : "layer." + problem.field);
 }
 
+// Cancels work that asks only its Progress when the question ends.
+class QuestionProgress final : public Progress {
+ public:
+  bool cancelled() const override {
+    return Progress::cancelled() || (question_ != nullptr && question_->is_over());
+  }
+
+ private:
+  const Question* const question_ = Question::current();
+};
+
 Result<Response> preview_layer(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::LayerPreviewRequest>(request));
   const protocol::LayerCreate& wanted = body.layer;
@@ -46,11 +59,14 @@ Result<Response> preview_layer(const RouteContext& context, const Request& reque
     layer->formula = std::move(*formula);
   }
   const room::SeenGrid grid{body.picture.camera, body.picture.width, body.picture.height};
-  Progress unwatched;  // an interrupted request ends the question
+  QuestionProgress progress;
   const auto made =
       app::preview_layer(context, *room, std::move(*layer), recipe, wanted.palette.has_value(),
-                         request.author(), grid, unwatched);
-  if (!made) return in_layer(made.error());
+                         request.author(), grid, progress);
+  if (!made) {
+    if (Question* question = Question::current()) question->check();  // tells why it has ended
+    return in_layer(made.error());
+  }
   return json_response({{"resolution", made->layer.resolution},
                         {"share", made->share},
                         {"unit", made->layer.unit},

@@ -128,7 +128,7 @@ export class StrataLayerDialog extends LitElement {
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
       ${layer && !this._base ? html`<p class="hint" role="status" ?hidden=${this._problem !== ""}>${texts.loading}</p>` : this.form()}
-      ${this.isComputed ? html`<strata-layer-preview .session=${this.session}></strata-layer-preview>` : nothing}
+      ${this.isComputed ? html`<strata-layer-preview .session=${this.session} @cancelled=${() => this.renderRoot.querySelector<HTMLElement>("#preview")?.focus()}></strata-layer-preview>` : nothing}
       <p class="error" role="alert" ?hidden=${!this._problem}>${this._problem}</p>
       ${
         layer && (this._stale || !this._base)
@@ -137,7 +137,7 @@ export class StrataLayerDialog extends LitElement {
           </button>`
           : html`${
               this.isComputed
-                ? html`<button slot="actions" ?disabled=${this._busy} @click=${() => void this.preview()}>${words.preview}</button>`
+                ? html`<button slot="actions" id="preview" ?disabled=${this._busy} @click=${() => void this.preview()}>${words.preview}</button>`
                 : nothing
             }<button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => this._form.requestSubmit()}>
             ${layer ? texts.save : this.isComputed ? words.compute : words.create}
@@ -151,13 +151,14 @@ export class StrataLayerDialog extends LitElement {
     const layer = this._base?.layer;
     return keyed(
       this._base?.etag,
-      html`<form id="form" novalidate @submit=${this.onSubmit} @input=${this.dropPreview}>
+      html`<form id="form" novalidate @submit=${this.onSubmit}>
         ${layer ? nothing : this.kinds()}
         ${
           this._purpose === "shape"
             ? html`<strata-shape-fields
               .session=${this.session}
               .wrong=${this._problemField}
+              @input=${this.dropPreview}
               @kind-changed=${() => {
                 this.dropPreview();
                 this.requestUpdate();
@@ -261,7 +262,10 @@ export class StrataLayerDialog extends LitElement {
           content: html`<b>${title}</b><span>${lead}</span>`,
         })),
         chosen: this._purpose,
-        choose: (purpose) => (this._purpose = purpose),
+        choose: (purpose) => {
+          this.dropPreview();
+          this._purpose = purpose;
+        },
       })}
       <p class="hint chosen-lead" aria-hidden="true">${kinds.find(([value]) => value === this._purpose)?.[2]}</p>
     </div>`;

@@ -11,7 +11,7 @@ import { ApiError } from "../../net/api-error";
 import type { ModelSession } from "../../session/model-session";
 import { texts } from "../../texts";
 import { sharedStyles } from "../../ui/styles";
-import { gradient, legendStyles } from "./legend";
+import { legendStyles, paletteLegend } from "./legend";
 
 const kMostPixels = 640; // longer side of the picture
 const words = texts.layer_preview;
@@ -41,7 +41,7 @@ export class StrataLayerPreview extends LitElement {
         max-height: 22rem;
         object-fit: contain;
       }
-      .running {
+      .told {
         display: flex;
         align-items: center;
         justify-content: space-between;
@@ -96,42 +96,34 @@ export class StrataLayerPreview extends LitElement {
 
   override render(): TemplateResult {
     const { _shown: shown } = this;
-    return html`<div role="status">
-      ${
-        this._running
-          ? html`<div class="running">
-              <span class="hint">${words.running}</span>
-              <button @click=${() => this.clear()}>${texts.cancel}</button>
-            </div>`
-          : shown
-            ? this.figure(shown)
-            : nothing
-      }
-    </div>`;
+    return html`<div class="told">
+        <p class="hint" role="status">${this._running ? words.running : shown ? this.told(shown) : ""}</p>
+        ${this._running ? html`<button @click=${() => this.cancel()}>${texts.cancel}</button>` : nothing}
+      </div>
+      ${shown ? this.figure(shown) : nothing}`;
   }
 
-  private figure({
-    statistics,
-    palette,
-    unit,
-    share,
-    resolution,
-    picture,
-  }: LayerPreview): TemplateResult {
+  /** Cancels the preview, and returns the focus to the button that began it. */
+  private cancel(): void {
+    this.clear();
+    this.dispatchEvent(new CustomEvent("cancelled"));
+  }
+
+  private told({ statistics, palette, unit, share, resolution }: LayerPreview): string {
     const { min, max } = statistics;
+    const values =
+      min === undefined || max === undefined
+        ? words.nothing
+        : palette.mode === "categorical"
+          ? words.covers(formatPercent(share))
+          : words.range(formatNumber(min), formatNumber(max), unit, formatPercent(share));
+    return resolution < this._wanted ? `${values} ${words.coarse}` : values;
+  }
+
+  private figure({ statistics, palette, unit, picture }: LayerPreview): TemplateResult {
     return html`<figure>
       <img src="data:image/png;base64,${picture}" alt=${words.picture} />
-      ${palette.mode === "categorical" || min === undefined ? nothing : gradient(completePalette(palette), unit)}
-      <figcaption class="hint">
-        ${
-          min === undefined || max === undefined
-            ? words.nothing
-            : palette.mode === "categorical"
-              ? words.covers(formatPercent(share))
-              : words.range(formatNumber(min), formatNumber(max), unit, formatPercent(share))
-        }
-        ${resolution < this._wanted ? words.coarse : nothing}
-      </figcaption>
+      ${statistics.min === undefined ? nothing : paletteLegend(completePalette(palette), unit, words.legend)}
     </figure>`;
   }
 }

@@ -102,6 +102,14 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
   return gradient(palette, unit);
 }
 
+/** Renders the legend of a palette whose values are neither keys nor terms. */
+export const paletteLegend = (palette: Palette, unit: string, label: string): TemplateResult =>
+  palette.mode === "categorical"
+    ? html`<ul class="legend-classes" aria-label=${label}>
+        ${palette.points.slice(0, kMostLines).map((point) => line(point, point.label ?? formatNumber(point.at)))}
+      </ul>`
+    : gradient(palette, unit);
+
 /**
  * Sorts the points by their position in the list of terms. Adds the depth of each term in the tree.
  */
@@ -173,7 +181,7 @@ export function valueLabel(
   return value;
 }
 
-export function gradient(palette: Palette, unit: string): TemplateResult {
+function gradient(palette: Palette, unit: string): TemplateResult {
   const span = palette.max - palette.min || 1;
   const marks = ticks(palette.min, palette.max);
   return html`<div>

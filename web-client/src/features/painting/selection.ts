@@ -73,6 +73,7 @@ export interface SelectionHost {
 type Steps = readonly SelectionStep[];
 
 const kMostUndone = 100;
+const rounded = (pixel: number): number => Math.round(pixel * 10) / 10;
 const kMostPathPoints = 4096; // of the path of a brush
 
 export class Selection implements FinishedOutlines {
@@ -89,6 +90,7 @@ export class Selection implements FinishedOutlines {
   active: CornerPlace | null = null;
   readonly wand: Wand;
 
+  private _wandIsActive = false;
   private _past: Steps[] = [];
   private _future: Steps[] = [];
   private _before: Steps | null = null; // the steps before the drag of a corner
@@ -154,26 +156,43 @@ export class Selection implements FinishedOutlines {
   }
 
   /**
-   * Moves the brush that began with `addSimilar` to further pixels. Keeps those that are `spacing`
-   * pixels apart.
+   * Moves the brush that began with `addSimilar` to further pixels. The server does not join the
+   * pixels of the path, so they are `spacing` pixels apart, however fast the pointer is.
    */
   brushTo(points: readonly Point[], spacing: number): void {
     if (!this.clicked || !this._clicked?.brushed) return;
     const path = [...this._clicked.brushed.path];
-    for (const point of points) {
-      const [x, y] = path[path.length - 1]!;
-      if (path.length < kMostPathPoints && Math.hypot(point[0] - x, point[1] - y) >= spacing)
-        path.push(point);
-    }
+    const step = Math.max(1, spacing);
+    for (const [toX, toY] of points)
+      while (path.length < kMostPathPoints) {
+        const [x, y] = path[path.length - 1]!;
+        const distance = Math.hypot(toX - x, toY - y);
+        if (distance < step) break;
+        const share = step / distance;
+        path.push([rounded(x + (toX - x) * share), rounded(y + (toY - y) * share)]);
+      }
     if (path.length === this._clicked.brushed.path.length) return;
     this._clicked.brushed = { ...this._clicked.brushed, path };
     this.wandChanged();
   }
 
-  /** Whether the wand selects with a brush. Its strokes usually make up one area together. */
+  /** Whether the wand selects with a brush. */
   useBrush(brushes: boolean): void {
-    if (this.mode === (brushes ? "replace" : "add")) this.mode = brushes ? "add" : "replace";
-    this.wand.set({ brushes });
+    this.changeDefault(() => this.wand.set({ brushes }));
+  }
+  /** The wand is the active tool, or another tool is. */
+  wandIsActive(active: boolean): void {
+    this.changeDefault(() => (this._wandIsActive = active));
+  }
+
+  /** The mode before the user chooses one. Strokes of a brush usually make up one area together. */
+  private get defaultMode(): SelectionMode {
+    return this._wandIsActive && this.wand.brushes ? "add" : "replace";
+  }
+  private changeDefault(change: () => void): void {
+    const wasDefault = this.mode === this.defaultMode;
+    change();
+    if (wasDefault) this.setMode(this.defaultMode);
   }
 
   /** Adds a saved selection. Its steps can be removed one by one if it replaces the selection. */
@@ -226,7 +245,7 @@ export class Selection implements FinishedOutlines {
 
   clear(): void {
     if (this.isEmpty) return;
-    this.mode = this.wand.brushes ? "add" : "replace";
+    this.mode = this.defaultMode;
     this.active = this._clicked = null;
     this._past = [];
     this._future = [];
@@ -485,16 +504,20 @@ export class Selection implements FinishedOutlines {
     }
   }
 
-  /** Returns to the steps before a change that the server refuses. */
+  /**
+   * Returns to the steps before a change that the server refuses. Earlier parts stay, also those
+   * that the server has not measured yet.
+   */
   private dropRefused(): void {
     const { steps: refused, _accepted: accepted } = this;
-    if (accepted.length === 0 || accepted === refused) {
+    const before = accepted.length >= refused.length ? accepted : this._past[this._past.length - 1];
+    if (!before || before === refused) {
       this.clear();
       return;
     }
-    this._past = this._past.filter((steps) => steps !== accepted);
+    this._past = this._past.filter((steps) => steps !== before);
     this.active = null;
-    this.steps = accepted;
+    this.steps = before;
     this._again = true;
   }
 }

@@ -9,6 +9,8 @@ import { type BrushHost, BrushTool } from "./brush-tool";
 
 export interface WandToolHost extends Pick<Navigator, "orbit" | "pan"> {
   selectAt(sample: PointerSample): void;
+  /** The tool becomes active, or another tool does. */
+  active(isActive: boolean): void;
   /** Whether a drag selects with the brush. */
   brushes(): boolean;
   readonly brush: BrushHost;
@@ -28,8 +30,12 @@ export class WandTool extends DragTool implements Tool {
     this._brush = new BrushTool(this.name, _host.brush);
   }
 
+  override activate(): void {
+    this._host.active(true);
+  }
   override deactivate(): void {
     this._brush.deactivate();
+    this._host.active(false);
   }
   override down(sample: PointerSample): void {
     if (this._host.brushes()) this._brush.down(sample);

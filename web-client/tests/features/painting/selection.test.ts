@@ -273,6 +273,7 @@ describe("the options of the wand", () => {
   });
 
   it("apply to the part of a brush too, which grows while the brush moves", async () => {
+    selection.wandIsActive(true);
     selection.useBrush(true);
     expect(selection.mode).toBe("add");
     selection.addSimilar([10, 10], {}, 4);
@@ -289,6 +290,7 @@ describe("the options of the wand", () => {
     const path = [
       [10, 10],
       [13, 10],
+      [16, 10], // the pointer was faster than the frames
       [19, 10],
     ];
     expect(likes().at(-1)).toMatchObject({ at, path, radius_mm: 4, tolerance: 12 });
@@ -305,8 +307,24 @@ describe("the options of the wand", () => {
     expect(selection.steps).toMatchObject([{ within: { like: { path } } }]);
     selection.clear();
     expect(selection.mode).toBe("add");
-    selection.useBrush(false);
+    selection.wandIsActive(false); // other tools replace the selection
     expect(selection.mode).toBe("replace");
+    selection.wandIsActive(true);
+    selection.setMode("subtract"); // a choice of the user stays
+    selection.useBrush(false);
+    expect(selection.mode).toBe("subtract");
+  });
+
+  it("of a brush are kept if the server refuses the next stroke before it has measured them", async () => {
+    selection.wandIsActive(true);
+    selection.useBrush(true);
+    selection.addSimilar([10, 10], {}, 4);
+    selection.brushTo([[30, 10]], 4);
+    const [first] = selection.steps;
+    selection.addSimilar([500, 10], {}, 4); // off the model
+    await answer(problem(499));
+    await answer(problem(422));
+    expect([selection.steps, selection.canUndo]).toEqual([[first], false]);
   });
 
   it("of a brush have a longest path", () => {

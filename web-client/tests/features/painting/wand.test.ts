@@ -79,6 +79,7 @@ describe("the tool", () => {
     done = [];
     used = brushes = false;
     tool = new WandTool({
+      active: (isActive) => void done.push(isActive ? "on" : "off"),
       brushes: () => brushes,
       brush: {
         beginStroke: ({ x, alt = false }) => {
@@ -125,7 +126,7 @@ describe("the tool", () => {
     tool.cancel();
     tool.move([{ x: 90, y: 10 }]);
     expect(done.slice(5)).toEqual([
-      ...["brush 1 false", "1", "end", "ended"],
+      ...["brush 1 false", "1", "end", "ended", "off"],
       ...["brush 2 false", "2", "end", "ended"],
     ]);
   });
