@@ -119,7 +119,7 @@ test("the shape of the fitted surface can be chosen", async () => {
 
 test("a stroke is one edit with the width on the object, and can be undone", async () => {
   await radio(ada, words.tools.brush).click();
-  await dialog(ada).getByText(words.rollouts.paints("Test", "Test")).waitFor();
+  await dialog(ada).getByText(words.picture_tools.paints("Test", "Test")).waitFor();
   await dialog(ada).locator('[name="width"]').fill("12");
   const before = await edits();
   await drag(ada, [0.45, 0.5], [0.55, 0.5]);
@@ -146,7 +146,7 @@ test("a stroke is one edit with the width on the object, and can be undone", asy
 
 test("a wrong width stays at its field", async () => {
   await dialog(ada).locator('[name="width"]').fill("wide");
-  await dialog(ada).getByText(words.rollouts.wrong_width).waitFor();
+  await dialog(ada).getByText(words.picture_tools.wrong_width).waitFor();
   const before = await edits();
   await drag(ada, [0.4, 0.5], [0.6, 0.5]);
   await dialog(ada).locator('[name="width"]').fill("12");
@@ -173,7 +173,7 @@ test("a stroke at one end of the picture continues at the other end", async () =
 });
 
 test("an area has clicked corners, and Escape discards it before it closes the dialog", async () => {
-  await radio(ada, words.rollouts.area).click();
+  await radio(ada, words.picture_tools.area).click();
   const corners = [
     [0.4, 0.4],
     [0.6, 0.4],

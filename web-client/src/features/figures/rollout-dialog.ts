@@ -5,24 +5,19 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
-import { formatCount, formatFixed, readNumber, typedNumber } from "../../core/locale";
+import { formatCount, formatFixed } from "../../core/locale";
 import type { RolloutRequest, RolloutSheet } from "../../core/protocol.gen";
-import { labelOf } from "../../domain/cells";
-import { colorOf, cssColor } from "../../domain/palette";
 import { ApiError } from "../../net/api-error";
 import { followSession } from "../../session/follow-session";
-import { describeValue } from "../../session/layer-values";
 import type { ModelSession } from "../../session/model-session";
 import "../../session/picture/picture-canvas";
 import type { StrataPictureCanvas } from "../../session/picture/picture-canvas";
-import type { DrawnPart, PicturePart, PictureTool } from "../../session/picture/picture-drawing";
+import type { DrawnPart, PicturePart } from "../../session/picture/picture-drawing";
 import { PicturePainting } from "../../session/picture/picture-painting";
+import { PictureTools, pictureToolStyles } from "../../session/picture/picture-tools";
 import { texts } from "../../texts";
 import "../../ui/dialog";
-import { icon } from "../../ui/icons";
 import { notices } from "../../ui/notices";
-import { numberInput } from "../../ui/number-input";
-import { radioGroup } from "../../ui/radio-group";
 import { saveBlob } from "../../ui/save-from";
 import { formStyles, sharedStyles } from "../../ui/styles";
 import { rolloutFields, rolloutNumber, rolloutStyles } from "./rollout-fields";
@@ -37,8 +32,6 @@ import { isSameSheet, sheetOrigin, withinSheet } from "./rollout-sheet";
 
 const words = texts.rollouts;
 const kWaitMs = 350; // delay after the last key press
-const kTools: readonly PictureTool[] = ["move", "brush", "area"];
-const kZooms = [1, 2, 4] as const;
 
 @customElement("strata-rollout-dialog")
 export class StrataRolloutDialog extends LitElement {
@@ -49,15 +42,19 @@ export class StrataRolloutDialog extends LitElement {
   @state() private _problem = "";
   @state() private _isDrawing = false;
   @state() private _isSaving = false;
-  @state() private _tool: PictureTool = "move";
-  @state() private _zoom: (typeof kZooms)[number] = 1;
-  @state() private _width = ""; // of the brush, as typed
   @query("strata-picture-canvas") private _canvas!: StrataPictureCanvas | null;
   // The sheet of the picture, and the width of its pixels.
   private _shown: { sheet: RolloutSheet; origin: [number, number]; pixelMm: number } | null = null;
   private _timer = 0;
   private _asked: AbortController | null = null;
   private _painting!: PicturePainting;
+  private readonly _tools = new PictureTools(this, {
+    session: () => this.session,
+    painting: () => this._painting,
+    unit: "mm",
+    left: () => this._canvas?.discard(),
+    zoomed: () => void this._painting.redraw(),
+  });
 
   constructor() {
     super();
@@ -68,6 +65,7 @@ export class StrataRolloutDialog extends LitElement {
     sharedStyles,
     formStyles,
     rolloutStyles,
+    pictureToolStyles,
     css`
       form {
         display: grid;
@@ -82,16 +80,6 @@ export class StrataRolloutDialog extends LitElement {
       figure[aria-busy="true"] .idle {
         opacity: 0.5;
       }
-      .painting {
-        display: flex;
-        flex-wrap: wrap;
-        align-items: center;
-        gap: var(--space-2) var(--space-4);
-      }
-      .painting .width {
-        display: inline-block;
-        width: 5.5rem;
-      }
     `,
   ];
 
@@ -99,7 +87,7 @@ export class StrataRolloutDialog extends LitElement {
     super.connectedCallback();
     const { session } = this;
     this._input = session.figures.draft.rollout ?? kNewRollout;
-    this._width = typedNumber(session.painting.brush.width.mm);
+    this._tools.start();
     this._painting = new PicturePainting({
       api: session.api,
       modelId: session.modelId,
@@ -136,25 +124,25 @@ export class StrataRolloutDialog extends LitElement {
   }
 
   private sheet(): TemplateResult {
-    const { _sheet: sheet, _picture: picture } = this;
+    const { _sheet: sheet, _picture: picture, _tools: tools } = this;
     const shown = picture ? this._shown : null;
-    return html`${shown && this.session.canPaint ? this.tools() : nothing}
+    return html`${shown && this.session.canPaint ? this._tools.render() : nothing}
     <figure aria-busy=${this._isDrawing}>
       ${
         shown
           ? html`<strata-picture-canvas
-              class=${this._tool === "move" ? "idle" : ""}
+              class=${tools.tool === "move" ? "idle" : ""}
               .picture=${picture}
               .alt=${words.alt}
               .label=${words.paint_on}
               .origin=${shown.origin}
               .unitPerPixel=${shown.pixelMm}
-              .tool=${this.tool}
-              .radius=${readNumber(this._width) / 2}
+              .tool=${tools.tool}
+              .radius=${tools.radius}
               .waiting=${this._painting.waiting}
-              .color=${this.color}
-              ?zoomed=${this._zoom > 1}
-              @drawn=${(event: CustomEvent<PicturePart>) => this.paint(shown.sheet, { part: event.detail, color: this.color })}
+              .color=${tools.color}
+              ?zoomed=${tools.zoom > 1}
+              @drawn=${(event: CustomEvent<PicturePart>) => this.paint(shown.sheet, { part: event.detail, color: tools.color })}
             ></strata-picture-canvas>`
           : nothing
       }
@@ -164,103 +152,12 @@ export class StrataRolloutDialog extends LitElement {
     </figure>`;
   }
 
-  private tools(): TemplateResult {
-    const { _tool: tool, _painting: painting } = this;
-    const layer = this.session.layers.selected;
-    const names = { move: words.move, brush: texts.tools.brush, area: words.area };
-    const isWrong = tool === "brush" && !this.hasWidth;
-    return html`<div class="painting">
-        ${radioGroup({
-          label: texts.model.tools,
-          class: "segments",
-          choices: kTools.map((value) => ({ value, content: names[value] })),
-          chosen: tool,
-          choose: (value) => this.choose(value),
-        })}
-        ${radioGroup({
-          label: words.zoom,
-          class: "segments",
-          choices: kZooms.map((value) => ({ value, content: `${value} ×` })),
-          chosen: this._zoom,
-          choose: (value) => this.zoom(value),
-        })}
-        ${
-          tool === "brush"
-            ? html`<label>${texts.brush.width} (mm) <span class="width">${numberInput({
-                value: this._width,
-                name: "width",
-                min: 0.1,
-                wrong: isWrong,
-                toldAt: "wrong-width",
-                typed: (text) => (this._width = text),
-              })}</span></label>`
-            : nothing
-        }
-        ${
-          tool === "move"
-            ? nothing
-            : html`<label class="check"><input
-                  type="checkbox"
-                  name="erases"
-                  .checked=${painting.erases}
-                  @change=${(event: Event) => {
-                    painting.erases = (event.target as HTMLInputElement).checked;
-                    this.requestUpdate();
-                  }}
-                /> ${texts.areas.erases}</label>
-                <button class="icon quiet" ?disabled=${!layer} title=${texts.model.undo} aria-label=${texts.model.undo} @click=${() => layer && painting.undo(layer)}>${icon("undo")}</button>
-                <button class="icon quiet" ?disabled=${!layer} title=${texts.model.redo} aria-label=${texts.model.redo} @click=${() => layer && painting.redo(layer)}>${icon("redo")}</button>`
-        }
-      </div>
-      ${isWrong ? html`<p class="error" id="wrong-width" role="alert">${words.wrong_width}</p>` : nothing}
-      ${tool === "move" ? nothing : html`<p class="hint">${this.paints} ${tool === "area" ? words.area_hint : words.brush_hint}</p>`}`;
-  }
-
   private paint(sheet: RolloutSheet, drawn: DrawnPart): void {
     const { api, modelId: model } = this.session;
     this._painting.paint(drawn, async ({ layer, paint }) => {
       const body = { within: withinSheet(sheet, drawn.part), into: { layer: layer.id, ...paint } };
       return (await api.json("POST /models/{model}/select", { path: { model }, body })).edit;
     });
-  }
-
-  /** What the tools paint on which layer. */
-  private get paints(): string {
-    const { layers, painting, tables } = this.session;
-    const layer = layers.selected;
-    if (!layer) return texts.brush.no_layer;
-    if (this._painting.erases) return `${texts.brush.erases(labelOf(layer))}.`;
-    const value = describeValue(layer, painting.brush.valueFor(layer), tables);
-    return words.paints(value, labelOf(layer));
-  }
-
-  private get color(): string | null {
-    const { layers, painting } = this.session;
-    const layer = layers.selected;
-    if (!layer || this._painting.erases) return null;
-    const color = colorOf(layers.palette(layer), painting.brush.valueFor(layer));
-    return color ? cssColor(color) : null;
-  }
-
-  private get hasWidth(): boolean {
-    const width = readNumber(this._width);
-    return width > 0 && width <= 1e9;
-  }
-
-  /** The chosen tool, if it can be used. */
-  private get tool(): PictureTool {
-    return this._tool === "brush" && !this.hasWidth ? "move" : this._tool;
-  }
-
-  private choose(tool: PictureTool): void {
-    this._canvas?.discard();
-    this._tool = tool;
-  }
-
-  private zoom(zoom: (typeof kZooms)[number]): void {
-    if (zoom === this._zoom) return;
-    this._zoom = zoom;
-    void this._painting.redraw();
   }
 
   private fitted(sheet: RolloutSheet): string {
@@ -321,7 +218,7 @@ export class StrataRolloutDialog extends LitElement {
       });
       if (asked !== this._asked) return false;
       this._sheet = sheet;
-      const preview = previewOf(request, sheet, this._zoom);
+      const preview = previewOf(request, sheet, this._tools.zoom);
       const picture = await api.blob("POST /models/{model}/rollout", {
         path,
         body: preview,
