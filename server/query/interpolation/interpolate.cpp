@@ -18,6 +18,7 @@
 #include "query/interpolation/matern_field.h"
 #include "query/interpolation/readings.h"
 #include "query/interpolation/surface_cells.h"
+#include "query/regions/neighborhood_limits.h"
 #include "query/regions/texel_discs.h"
 
 namespace strata::query {
@@ -31,7 +32,8 @@ constexpr std::size_t kMaxCovariances = 10'000'000;
 constexpr double kFinestCells = 14, kMediumCells = 9, kCoarsestCells = 5;
 // The area of a cell is at least about this much of the square of the spacing.
 constexpr double kCellArea = 0.8;
-constexpr double kLeastTexels = 4;  // in a spacing, so that borders of cells are well measured
+// In a spacing, so that borders of cells are well measured.
+constexpr double kLeastTexels = kMinRangeTexels / kCoarsestCells;
 
 std::size_t max_cells(std::size_t readings) {
   return std::min(kMaxCells, kMaxCovariances / readings);
@@ -61,10 +63,9 @@ tl::unexpected<Error> range_too_small(double range, const mesh::SurfaceMap& map,
                                       std::size_t readings, const std::string& field) {
   // Narrow pieces have more cells than their area suggests.
   constexpr double kMore = 1.25;
-  const double texel = mean_texel_size(map);
   const double least = std::max(
-      {kMore * range, kCoarsestCells * kLeastTexels * texel,
-       kCoarsestCells * std::sqrt(map.area_total / (kCellArea * double(max_cells(readings))))});
+      kMore * range,
+      kCoarsestCells * std::sqrt(map.area_total / (kCellArea * double(max_cells(readings)))));
   return refuse("Range too small",
                 "With " + std::to_string(readings) +
                     " readings on this surface, choose a range of " + rounded(least, std::ceil) +
@@ -308,8 +309,7 @@ Result<SurfaceValues> interpolated_values(Interpolated what, const SurfaceValues
                                           ValueType type, double range, const mesh::SurfaceMap& map,
                                           const mesh::TexelGraph& graph, const std::string& field,
                                           Progress& progress, int threads) {
-  if (!(range > 0))
-    return refuse("Range not valid", "The range is a distance above 0, in model units.", field);
+  STRATA_TRY(check_interpolation_range(range, mean_texel_size(map), field));
   progress.report(0, "Finding readings");
   const auto readings = STRATA_TRY(checked_readings(values, type, map, graph, field, progress));
   if (const double longest = kMaxRangeDiagonals * diagonal_of(map); !(range <= longest))

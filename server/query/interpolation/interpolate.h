@@ -50,9 +50,10 @@ enum class Interpolated {
 //
 // The field is computed for at most 50 000 cells (surface_cells.h), and for fewer if there are many
 // readings. Needs about 25 bytes of memory per texel of the map, and at most kInterpolationBytes.
-// Fails when cancelled. Fails with an `invalid` error at `field` for a range that is not a positive
-// number, that is too small for the cells or beyond kMaxRangeDiagonals, for fewer readings than
-// kMinReadings or more than kMaxReadings, and for errors of readings that are all equal.
+// Fails when cancelled. Fails with an `invalid` error at `field` for a range that
+// check_interpolation_range (query/regions/neighborhood_limits) refuses, that is too small for the
+// cells or beyond kMaxRangeDiagonals, for fewer readings than kMinReadings or more than
+// kMaxReadings, and for errors of readings that are all equal.
 Result<SurfaceValues> interpolated_values(Interpolated what, const SurfaceValues& values,
                                           ValueType type, double range, const mesh::SurfaceMap& map,
                                           const mesh::TexelGraph& graph, const std::string& field,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "core/progress.h"
 #include "mesh/parallel.h"
 #include "mesh/texels/texel_graph.h"
+#include "query/regions/neighborhood_limits.h"
 #include "query/regions/parallel_values.h"
 #include "query/regions/place_permutations.h"
 #include "query/regions/row_runs.h"
@@ -375,30 +375,14 @@ std::vector<float> decoded(const SurfaceValues& values, ValueType type) {
   return numbers;
 }
 
-Result<void> check_radius(double radius, const mesh::SurfaceMap& map, const std::string& field) {
-  const double most = max_focal_radius(map);
-  if (radius <= most && most > 0) return {};
-  char largest[48];
-  std::snprintf(largest, sizeof largest, "%.3g", 0.999 * most);
-  return fail(ErrorCode::invalid, "Radius too large",
-              "The radius of a neighborhood on this layer can be at most " + std::string(largest) +
-                  " model units, which is 40 texels. Choose a smaller radius, or a layer with "
-                  "larger texels (`resolution`).",
-              field);
-}
-
 }  // namespace
-
-double max_focal_radius(const mesh::SurfaceMap& map) {
-  return kMaxDiscTexels * mean_texel_size(map);
-}
 
 Result<SurfaceValues> focal_values(Focal statistic, const SurfaceValues& values, ValueType type,
                                    double radius, const mesh::SurfaceMap& map,
                                    const mesh::TexelGraph& graph, const std::string& field,
                                    Progress& progress, int threads) {
   if (map.surface_texels == 0) return values;
-  STRATA_TRY(check_radius(radius, map, field));
+  STRATA_TRY(check_focal_radius(radius, mean_texel_size(map), field));
   const RowRuns rows(values, map, graph, progress, threads);
   Input input{values, rows, map, {}};
   if (statistic != Focal::variety) input.numbers = decoded(values, type);
@@ -418,7 +402,7 @@ Result<SurfaceValues> hot_spot_chances(const SurfaceValues& values, ValueType ty
                                        const mesh::TexelGraph& graph, const std::string& field,
                                        Progress& progress, int threads) {
   if (map.surface_texels == 0) return values;
-  STRATA_TRY(check_radius(radius, map, field));
+  STRATA_TRY(check_focal_radius(radius, mean_texel_size(map), field));
   const RowRuns rows(values, map, graph, progress, threads);
   const Input input{values, rows, map, decoded(values, type)};
   const RowParts<MeanPart> parts(input, threads);

@@ -30,9 +30,6 @@ enum class Focal {
   hot_spot,
 };
 
-// The largest radius of `focal_values`, in model units: kMaxDiscTexels texels of the mean size.
-double max_focal_radius(const mesh::SurfaceMap& map);
-
 // Returns a statistic of the values within `radius` (model units) along the surface around each
 // surface texel, as f32. Texels without a value do not count. The result has no value where no
 // texel in the neighborhood has one, also where the texel itself has none but another has one.
@@ -40,7 +37,7 @@ double max_focal_radius(const mesh::SurfaceMap& map);
 //
 // The neighborhood is that of query/regions/texel_discs. Near a seam or an edge, distances are
 // straight through space, and at folds and thin walls, where that reaches too much surface, along
-// paths. On curved surfaces within a chart, it is exact to first order.
+// paths. TexelDiscs states how far its rim can be from the radius.
 //
 // Hot spots also need the values of all other places: where they are equal, or all within the
 // radius, the score is 0.
@@ -49,8 +46,8 @@ double max_focal_radius(const mesh::SurfaceMap& map);
 // three times as long near seams, and a hundred times as long at folds. It grows with the square of
 // the radius at folds, and for the variety of layers with many values. Needs about 24 bytes of
 // memory per texel of the map. The result does not depend on the number of threads. Fails when
-// cancelled, and with an `invalid` error at `field` for a radius above max_focal_radius. The radius
-// must not be negative.
+// cancelled, and at `field` for a radius that check_focal_radius refuses. The radius must not be
+// negative.
 Result<SurfaceValues> focal_values(Focal statistic, const SurfaceValues& values, ValueType type,
                                    double radius, const mesh::SurfaceMap& map,
                                    const mesh::TexelGraph& graph, const std::string& field,

@@ -7,13 +7,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
 #include "mesh/texels/texel_graph.h"
+#include "query/regions/neighborhood_limits.h"
 #include "query/regions/parallel_values.h"
 #include "query/regions/texel_discs.h"
 
@@ -267,18 +267,6 @@ class LineFit {
   std::vector<float> weight_, u_, v_;
 };
 
-tl::unexpected<Error> refused_width(const mesh::SurfaceMap& map, const std::string& field) {
-  char widths[128];
-  std::snprintf(widths, sizeof widths, "%.3g to %.3g",
-                1.001 * kMinLineTexels * mean_texel_size(map),
-                0.999 * kMaxLineTexels * mean_texel_size(map));
-  return fail(ErrorCode::invalid, "Width out of range",
-              "The width of lines on this layer can be " + std::string(widths) +
-                  " model units, which is 2 to 22 texels. Choose another width, or a layer with "
-                  "texels of another size (`resolution`).",
-              field);
-}
-
 }  // namespace
 
 Result<SurfaceValues> line_depth_values(Line line, const SurfaceValues& values, ValueType type,
@@ -286,9 +274,7 @@ Result<SurfaceValues> line_depth_values(Line line, const SurfaceValues& values, 
                                         const mesh::TexelGraph& graph, const std::string& field,
                                         Progress& progress, int threads) {
   if (map.surface_texels == 0) return values;
-  const double texel_size = mean_texel_size(map);
-  if (!(width >= kMinLineTexels * texel_size && width <= kMaxLineTexels * texel_size))
-    return refused_width(map, field);
+  STRATA_TRY(check_line_width(width, mean_texel_size(map), field));
   const Input input = read_input(line, values, type, map, graph);
   return compute_values(input.valid, progress, threads, {"Finding lines"},
                         [&] { return LineFit(input, width); });

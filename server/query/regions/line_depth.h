@@ -20,9 +20,6 @@ enum class Line {
   ridge,   // they are greater
 };
 
-// The least and the largest width for `line_depth_values`, in texels of the mean size.
-constexpr double kMinLineTexels = 2, kMaxLineTexels = 22;
-
 // Returns how deep a line lies below its two sides, or how high above them, at each surface texel
 // with a value, as f32 in the unit of the values. It is 0 where there is no line, and exact on the
 // center of a straight line of half to the whole `width` (model units) between flat sides. Lines of
@@ -40,8 +37,8 @@ constexpr double kMinLineTexels = 2, kMaxLineTexels = 22;
 //
 // The result has no value if the values around are in a strip too narrow for a fit. The time per
 // texel grows with the square of the width. Needs about 20 bytes of memory per texel of the map.
-// The result does not depend on the number of threads. Fails when cancelled, and with an `invalid`
-// error at `field` for a width of less than kMinLineTexels or more than kMaxLineTexels.
+// The result does not depend on the number of threads. Fails when cancelled, and at `field` for a
+// width that check_line_width (query/regions/neighborhood_limits) refuses.
 Result<SurfaceValues> line_depth_values(Line line, const SurfaceValues& values, ValueType type,
                                         double width, const mesh::SurfaceMap& map,
                                         const mesh::TexelGraph& graph, const std::string& field,

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "core/progress.h"
 #include "mesh/parallel.h"
 #include "query/regions/border_texels.h"
+#include "query/regions/neighborhood_limits.h"
 #include "query/regions/row_runs.h"
 #include "query/regions/texel_discs.h"
 #include "query/regions/value_areas.h"
@@ -63,14 +63,6 @@ Result<std::vector<std::uint64_t>> changeable_texels(const SurfaceValues& values
   return texels_near_borders(map, graph, at_border, static_cast<float>(limit), progress);
 }
 
-// Rounds down to three digits.
-std::string millimetres(double metres) {
-  const double mm = metres * 1000, step = std::pow(10, std::floor(std::log10(mm)) - 2);
-  char text[48];
-  std::snprintf(text, sizeof text, "%.3g mm", std::floor(mm / step) * step);
-  return text;
-}
-
 }  // namespace
 
 Result<SurfaceValues> majority(SurfaceValues values, const MajorityRequest& request,
@@ -78,13 +70,7 @@ Result<SurfaceValues> majority(SurfaceValues values, const MajorityRequest& requ
                                Progress& progress, int threads) {
   if (map.surface_texels == 0) return values;
   const double radius = request.radius, texel_size = mean_texel_size(map);
-  if (!(radius <= kMaxDiscTexels * texel_size))
-    return fail(ErrorCode::invalid, "Radius too large",
-                "The radius for this layer can be at most " +
-                    millimetres(kMaxDiscTexels * texel_size * request.metres_per_unit) +
-                    ", which is " + std::to_string(static_cast<int>(kMaxDiscTexels)) +
-                    " texels. Choose a smaller radius.",
-                "radius_mm");
+  STRATA_TRY(check_majority_radius(radius, texel_size, request.metres_per_unit));
   constexpr const char* kCounting = "Comparing areas";
   progress.report(0, "Finding borders");
   const auto near = STRATA_TRY(changeable_texels(values, radius, map, graph, progress));
@@ -93,8 +79,8 @@ Result<SurfaceValues> majority(SurfaceValues values, const MajorityRequest& requ
   if (count * radius * radius > request.max_work * texel_size * texel_size)
     return fail(ErrorCode::invalid, "Radius too large",
                 "The layer has so many borders that the radius can be at most " +
-                    millimetres(std::sqrt(request.max_work / count) * texel_size *
-                                request.metres_per_unit) +
+                    millimetres_for_message(std::sqrt(request.max_work / count) * texel_size *
+                                            request.metres_per_unit) +
                     ". Choose a smaller radius, or remove small regions first.",
                 "radius_mm");
   progress.report(0.2, kCounting);

@@ -27,16 +27,16 @@ struct MajorityRequest {
 // less than 1 in 10⁴. Among other equal areas, a value wins against no value, and the lowest bits
 // win. All texels are computed from the original values.
 //
-// The neighborhood contains the connected texels in a disc (query/regions/texel_discs). Near a
-// seam, an open edge or a gap, distances are measured straight through space. On curved surfaces,
-// such a neighborhood differs from one within a chart at most by texels at the rim.
+// The neighborhood contains the connected texels in a disc. Near a seam, an open edge or a gap,
+// distances are measured straight through space. TexelDiscs (query/regions/texel_discs) states how
+// far the rim can be from the radius.
 //
 // Only texels near a border between values are computed. A texel that is farther than three
 // quarters of the radius from all borders keeps its value. A row of an ellipse is a few runs of
 // equal values with prefix sums of the area, so the time per texel grows with the radius, and only
 // near seams with its square. Needs at most 36 bytes of memory per texel of the map. Fails when
-// cancelled, and with an `invalid` error at `radius_mm` for a radius of more than
-// kMaxDiscTexels (query/regions/texel_discs) or with more work than `max_work`. The message states
+// cancelled, and with an `invalid` error at `radius_mm` for a radius that check_majority_radius
+// (query/regions/neighborhood_limits) refuses or with more work than `max_work`. The message states
 // the largest radius.
 Result<SurfaceValues> majority(SurfaceValues values, const MajorityRequest& request,
                                const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,

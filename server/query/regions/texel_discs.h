@@ -13,12 +13,10 @@
 
 #include "mesh/texels/packed_position.h"
 #include "mesh/texels/texel_graph.h"
+#include "query/regions/neighborhood_limits.h"
 #include "query/regions/texel_balls.h"
 
 namespace strata::query {
-
-// The largest radius of neighborhoods, in texels of the mean size. Bounds the time per texel.
-constexpr double kMaxDiscTexels = 40;
 
 // Returns the side of a texel with the mean area, in model units; 0 without texels.
 double mean_texel_size(const mesh::SurfaceMap& map);

@@ -487,7 +487,7 @@ def test_interpolation(server):
     near(server.get(M + "/layers/damp/statistics").json()["area_m2"], 50 * 100 * 1e-6, 0.05)
 
     for expression, text in (
-        ("interpolated(moisture, 0)", "above 0"),
+        ("interpolated(moisture, 0)", "or more"),
         ("interpolated(moisture, 0.1)", "or more"),
         ("interpolated(moisture, 1000)", "or less"),
         ("interpolated(if(moisture > 28 and y > 50, 1, null), 100)", "Readings found"),

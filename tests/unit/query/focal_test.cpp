@@ -543,7 +543,6 @@ TEST(Focal, does_not_depend_on_threads_and_can_be_cancelled) {
 TEST(Focal, refuses_a_radius_of_more_than_40_texels) {
   const Surface sheet = test::cut_sheet({});
   const auto values = put(sheet, [](std::uint32_t) { return std::optional(1.0f); });
-  EXPECT_NEAR(max_focal_radius(sheet.map), 40, 1e-3);
   for (const double radius : {40.1, 1e300, std::numeric_limits<double>::quiet_NaN()}) {
     const auto refused = compute(Focal::max, sheet, values, radius);
     ASSERT_FALSE(refused);

@@ -371,7 +371,7 @@ TEST(Majority, refuses_a_radius_of_too_many_texels) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::invalid);
     EXPECT_EQ(refused.error().field, "radius_mm");
-    EXPECT_NE(refused.error().detail.find("at most 0.006 mm, which is 40 texels"),
+    EXPECT_NE(refused.error().detail.find("at most 0.00594 mm, which is 40 texels"),
               std::string::npos)
         << refused.error().detail;
   }
