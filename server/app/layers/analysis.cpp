@@ -36,8 +36,7 @@ Result<void> check(const room::Room& room, const std::vector<Layer>& layers,
   if (std::ranges::find(layers, step.layer.slug, &Layer::slug) != layers.end())
     return slug_taken(step.layer.slug);
   if (step.recipe) return {};
-  STRATA_TRY(
-      read_formula(room, step.expression, step.automatic, step.layer.visibility, {}, planned));
+  STRATA_TRY(read_formula(room, step.expression, step.automatic, step.layer, planned));
   return {};
 }
 
@@ -80,8 +79,7 @@ Result<AnalysisResult> run(const Services& services, const std::shared_ptr<room:
                                               step.has_palette, author.user, progress));
   } else {
     // Reads the expression again, because now the layers of the earlier steps have ids.
-    layer.formula =
-        STRATA_TRY(read_formula(*room, step.expression, step.automatic, layer.visibility));
+    layer.formula = STRATA_TRY(read_formula(*room, step.expression, step.automatic, layer));
     layer.origin = LayerOrigin::expression;
     std::vector<std::string> slugs;
     for (const auto& input : layer.formula->inputs) slugs.push_back(input.slug);

@@ -10,9 +10,11 @@
 #include "app/edits.h"
 #include "app/layers/reserved_regions.h"
 #include "app/records/painted_keys.h"
+#include "domain/scene/model_measures.h"
 #include "mesh/parallel.h"
 #include "query/regions/border_line.h"
 #include "query/regions/majority.h"
+#include "query/regions/neighborhood_limits.h"
 #include "query/regions/open_close.h"
 #include "room/edit.h"
 #include "room/layers.h"
@@ -215,6 +217,13 @@ Result<std::optional<CleanupResult>> find_saved(const Services& services, ModelI
   }
   read_answer(result, room::idempotent_response(row));
   return result;
+}
+
+Result<void> check_radius(const Model& model, const Layer& layer, const Cleanup& cleanup) {
+  const auto texel_size = reported_texel_size(model.atlas, layer.resolution);
+  if (!texel_size || cleanup.operation != Cleanup::Operation::majority) return {};
+  return query::check_majority_radius(cleanup.radius_m / model.metres(), *texel_size,
+                                      model.metres());
 }
 
 Result<CleanupResult> clean_up(const Services& services, room::Room& room, const Layer& layer,

@@ -13,6 +13,7 @@
 #include "core/uuid.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
+#include "domain/scene/model.h"
 #include "mesh/texels/texel_graph.h"
 #include "query/regions/sieve.h"
 #include "room/room.h"
@@ -62,6 +63,10 @@ struct CleanupResult {
   // The keys whose records have no texels, because others painted their pieces in the meantime.
   std::vector<std::int64_t> unpainted_keys{};
 };
+
+// Checks the radius of a majority as clean_up does, so that users need not wait for a job that must
+// fail. Checks nothing if the model does not know the size of its texels.
+Result<void> check_radius(const Model& model, const Layer& layer, const Cleanup& cleanup);
 
 // Changes the layer. Refuses a locked layer (403), a radius that is too large and layers with
 // different resolutions (422).

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "app/edits.h"
+#include "app/layers/formula_limits.h"
 #include "app/layers/prepared_formula.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"
@@ -71,8 +72,7 @@ std::optional<Palette> palette_of_values(const Layer& layer, const query::Statis
 }
 
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
-                                  Visibility visibility, std::optional<LayerId> self,
-                                  const std::vector<Layer>& planned) {
+                                  const Layer& computed, const std::vector<Layer>& planned) {
   const auto expression = STRATA_TRY(parse_formula(text));
   const std::vector<Layer> layers = room.layers().all();
   LayerFormula formula;
@@ -81,7 +81,7 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
   for (const std::string& slug : layers_of(expression)) {
     const auto layer = std::ranges::find(layers, slug, &Layer::slug);
     if (layer == layers.end()) continue;  // `check_expression` checks all other names
-    if (self && layer->id == *self)
+    if (layer->id == computed.id)
       return fail(ErrorCode::invalid, "Layer depends on itself",
                   "The expression uses the layer that it computes. Remove this layer from the "
                   "expression.",
@@ -91,7 +91,9 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
     formula.inputs.push_back(std::move(input));
   }
   std::ranges::sort(formula.inputs, {}, &LayerFormula::Input::slug);
-  STRATA_TRY(room.layers().check_expression(expression, "expression", visibility, planned));
+  STRATA_TRY(
+      room.layers().check_expression(expression, "expression", computed.visibility, planned));
+  STRATA_TRY(check_formula_limits(expression, room.model(), computed.resolution));
   return formula;
 }
 

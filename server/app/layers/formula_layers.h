@@ -31,13 +31,13 @@ Result<Expression> parse_formula(const std::string& text);
 std::optional<Palette> palette_of_values(const Layer& layer, const query::Statistics& values);
 
 // Finds the layers, the columns of their records and the properties of the surface that the text
-// names on this model. `self` is the computed layer, if it exists. `visibility` is its visibility.
-// Users who can see the layer must also be allowed to see its inputs. The text can also name
-// `planned` layers, which do not exist yet. They are no inputs of the returned formula. Refuses
-// syntax errors and unknown names (422 at `expression`, with the position of the character).
+// names on this model. `computed` is the computed layer, with its visibility and its resolution. It
+// has no id if it does not exist yet. Users who can see the layer must also be allowed to see its
+// inputs. The text can also name `planned` layers, which do not exist yet. They are no inputs of
+// the returned formula. Refuses syntax errors, unknown names, and a radius, width or range that the
+// job would refuse at this resolution (422 at `expression`, with the position of the character).
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
-                                  Visibility visibility, std::optional<LayerId> self = {},
-                                  const std::vector<Layer>& planned = {});
+                                  const Layer& computed, const std::vector<Layer>& planned = {});
 
 // Computes the content of the layer again, as one edit of the author, and notifies participants.
 // Without `overwrites`, refuses a layer that users have edited (409). Returns the layer after the

@@ -53,7 +53,7 @@ class UseCases : public RoomTest {
     layer.name = layer.slug = name;
     layer.type = ValueType::f32;
     layer.resolution = resolution;
-    auto formula = read_formula(*room(), expression, automatic, Visibility::everyone);
+    auto formula = read_formula(*room(), expression, automatic, layer);
     EXPECT_TRUE(formula) << formula.error().detail;
     layer.formula = *formula;
     layer.origin = LayerOrigin::expression;

@@ -163,6 +163,11 @@ def test_all_steps_are_checked_before_the_first(server):
             "steps[0].layer.expression",
             422,
         ),
+        (
+            [good, {"layer": {"name": "L", "expression": "focal_mean(good, 500)"}}],
+            "steps[1].layer.expression",
+            422,
+        ),
         ([good, {"layer": {**good["layer"], "slug": "7"}}], "steps[1].layer.slug", 422),
         ([good, {"layer": {"name": "good", "expression": "1"}}], "steps[1].layer.name", 409),
         ([{"layer": {"name": "Cracks", "expression": "1"}}], "steps[0].layer.name", 409),

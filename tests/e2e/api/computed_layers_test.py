@@ -323,9 +323,18 @@ def test_neighborhoods(server):
     chance = value(server, "chances", 20, 50)["value"]
     near(chance * 200, round(chance * 200), 0.001)
     assert 0.005 <= chance <= 1, chance
-    job = compute(server, "Wide", "focal_mean(bands, 50)", expect=202)
-    done = server.wait_for_job(job["id"])
-    assert done["state"] == "failed" and "40 texels" in done["problem"]["detail"], done
+    refused = compute(server, "Wide", "1 + focal_mean(bands, 50)", expect=422)
+    assert "40 texels" in refused["detail"], refused
+    assert (refused["field"], refused["offset"], refused["length"]) == (
+        "expression",
+        4,
+        10,
+    ), refused
+    # The stated radius is allowed.
+    most = refused["detail"].split("at most ")[1].split(" ")[0]
+    compute_along(server, "Widest", f"focal_mean(bands, {most})")
+    changed = server.request("PATCH", M + "/layers/widest", {"expression": "hot_spot(bands, 50)"})
+    assert (changed.status, changed.json()["field"]) == (422, "expression"), changed
 
 
 def test_a_preview_shows_what_a_layer_would_contain(server):
@@ -365,6 +374,7 @@ def test_a_preview_shows_what_a_layer_would_contain(server):
         ({}, "layer"),
         ({"expression": "valid(crcks)"}, "layer.expression"),
         ({"expression": f"distance({condition}, -1)"}, "layer.expression"),
+        ({"expression": "focal_mean(wet, 50)"}, "layer.expression"),
         ({"compute": {"kind": "sun_hours"}}, "layer.compute.latitude_deg"),
         ({"expression": "wet", "compute": {"kind": "height"}}, "layer.expression"),
     ):
@@ -378,6 +388,11 @@ def test_a_preview_shows_what_a_layer_would_contain(server):
     server.ok("DELETE", M + "/layers/hidden")
     nearest = preview(expression="nearest(wet)")
     assert nearest["statistics"]["max"] == 0.75 and nearest["share"] > 0.99, nearest["share"]
+    # The texels of the layer decide, 14 or 56 for this radius, and not those of the preview.
+    wide = "focal_mean(wet, 0.7)"
+    assert preview(expression=wide, resolution=2048)
+    refused = preview(expect=(422,), expression=wide, resolution=8192)
+    assert refused["field"] == "layer.expression" and "40 texels" in refused["detail"], refused
     assert server.get(M + "/layers").json() == before
 
 
@@ -422,9 +437,9 @@ def test_lines(server):
     assert cracks["type"] == "u8" and cracks["inputs"] == ["groove"], cracks
     for x, y, found in ((50, 25, True), (50, 33, True), (52, 25, False), (51, 25, False)):
         assert value(server, "cracks", x, y)["valid"] is found, (x, y)
-    job = compute(server, "Wide line", "valley(groove, 50)", expect=202)
-    done = server.wait_for_job(job["id"])
-    assert done["state"] == "failed" and "22 texels" in done["problem"]["detail"], done
+    for width in (0.01, 50):
+        refused = compute(server, "Other line", f"valley(groove, {width})", expect=422)
+        assert refused["field"] == "expression" and "22 texels" in refused["detail"], refused
 
 
 def test_cleanups(server):
@@ -462,10 +477,8 @@ def test_cleanups(server):
         assert layer["type"] == "u8", layer
         for place, at in places.items():
             assert value(server, name.lower(), *at)["valid"] is (place in inside), (name, place)
-    job = compute(server, "Wide", "majority(raw, 50)", expect=202)
-    done = server.wait_for_job(job["id"])
-    assert done["state"] == "failed" and "40 texels" in done["problem"]["detail"], done
-    assert done["problem"]["field"] == "expression", done
+    refused = compute(server, "Wide", "majority(raw, 50)", expect=422)
+    assert refused["field"] == "expression" and "40 texels" in refused["detail"], refused
 
 
 def test_interpolation(server):
@@ -487,8 +500,6 @@ def test_interpolation(server):
     near(server.get(M + "/layers/damp/statistics").json()["area_m2"], 50 * 100 * 1e-6, 0.05)
 
     for expression, text in (
-        ("interpolated(moisture, 0)", "or more"),
-        ("interpolated(moisture, 0.1)", "or more"),
         ("interpolated(moisture, 1000)", "or less"),
         ("interpolated(if(moisture > 28 and y > 50, 1, null), 100)", "Readings found"),
         ("interpolation_error(moisture * 0, 100)", "same value"),
@@ -498,6 +509,9 @@ def test_interpolation(server):
         assert done["state"] == "failed", done
         assert done["problem"]["field"] == "expression", done
         assert text in done["problem"]["detail"], done
+    for layer_range in (0, 0.1):
+        refused = compute(server, "Refused", f"interpolated(moisture, {layer_range})", expect=422)
+        assert refused["field"] == "expression" and "20 texels" in refused["detail"], refused
 
 
 def test_distances_work_in_computed_layers_only(server):

@@ -9,8 +9,11 @@
 #include <string>
 #include <thread>
 
+#include "domain/scene/model_measures.h"
 #include "mesh/atlas/atlas_report.h"
+#include "mesh/surface/geometry.h"
 #include "mesh/surface/uv_islands.h"
+#include "mesh/texels/surface_map.h"
 #include "strata_dirs.h"
 #include "support/meshes.h"
 #include "support/scan_atlas.h"
@@ -213,6 +216,36 @@ TEST(mesh_atlas, reports_how_much_surface_texels_hold_at_each_resolution) {
   double uv_sum = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) uv_sum += uv_area(*atlas, t);
   EXPECT_NEAR(sizes[0].area_mean * uv_sum * kLowest * kLowest, surface_area(mesh), 1e-6);
+}
+
+// The limits of functions along the surface rely on it (query/regions/neighborhood_limits).
+TEST(mesh_atlas, reports_the_mean_size_of_the_texels_on_the_surface_to_1_percent) {
+  const auto expect_same = [](const TriangleMesh& mesh, const Atlas& atlas) {
+    const Geometry geometry = build_geometry(mesh, atlas);
+    for (const auto& size : atlas.report.texel_sizes) {
+      Progress progress;
+      const auto map = bake_surface_map(geometry, size.resolution, progress);
+      ASSERT_TRUE(map);
+      const double of_map = std::sqrt(map->area_total / double(map->surface_texels));
+      EXPECT_NEAR(*reported_texel_size(atlas.report, size.resolution) / of_map, 1, 0.01)
+          << size.resolution;
+    }
+  };
+  Progress progress;
+  const auto sphere = test::sphere(40);
+  const auto made = make_atlas(sphere, kLowest, progress);
+  ASSERT_TRUE(made);
+  expect_same(sphere, *made);
+  const auto pieces = test::separate_triangles(100);
+  const auto of_pieces = make_atlas(pieces, 512, progress);
+  ASSERT_TRUE(of_pieces);
+  expect_same(pieces, *of_pieces);
+  for (const char* name : {"gargoyle_3dhop_50k_colour_normals.ply", "vessel_jug_seavase_35k.ply"}) {
+    if (!std::filesystem::exists(std::filesystem::path(STRATA_TEST_DATA) / name)) continue;
+    const auto& scan = test::scan_with_made_atlas(name);
+    ASSERT_TRUE(scan) << scan.error().detail;
+    expect_same(scan->mesh, scan->atlas);
+  }
 }
 
 TEST(mesh_atlas, the_largest_texel_of_an_even_sheet_is_any_texel) {

@@ -253,6 +253,7 @@ Result<Response> start_cleanup(const RouteContext& context, JobIdempotency& book
   auto repeated = STRATA_TRY(repeat_job(context, book, request, room->model(), operation, edit));
   if (repeated) return std::move(*repeated);
   const auto cleanup = STRATA_TRY(cleanup_of(context, *room, layer, body));
+  STRATA_TRY(app::check_radius(room->model(), layer, cleanup));
   if (body.apply) STRATA_TRY(room::check_not_locked(layer, edit.author.role));
   return start_job(context, book, request, room->model(), operation,
                    [&services = static_cast<const app::Services&>(context), room, layer, cleanup,

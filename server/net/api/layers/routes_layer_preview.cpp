@@ -54,7 +54,7 @@ Result<Response> preview_layer(const RouteContext& context, const Request& reque
     if (!checked) return in_layer(checked.error());
     recipe = std::move(*checked);
   } else {
-    auto formula = app::read_formula(*room, *wanted.expression, false, layer->visibility);
+    auto formula = app::read_formula(*room, *wanted.expression, false, *layer);
     if (!formula) return in_layer(formula.error());
     layer->formula = std::move(*formula);
   }

@@ -65,8 +65,7 @@ Result<Response> create_layer(const RouteContext& context, JobIdempotency& book,
   if (!columns) return tl::unexpected(columns.error());
   if (body.compute) return create_shape_layer(context, book, request, room, body, std::move(layer));
   if (body.expression) {
-    auto formula =
-        app::read_formula(*room, *body.expression, is_automatic(body.recompute), layer.visibility);
+    auto formula = app::read_formula(*room, *body.expression, is_automatic(body.recompute), layer);
     if (!formula) return tl::unexpected(formula.error());
     layer.formula = std::move(*formula);
     layer.origin = LayerOrigin::expression;
@@ -109,9 +108,8 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& bod
                 "Only layers with an `expression` can have `recompute`.", "recompute");
   const bool automatic =
       body.recompute ? is_automatic(body.recompute) : layer.formula && layer.formula->automatic;
-  auto formula =
-      app::read_formula(room, body.expression ? *body.expression : layer.formula->expression,
-                        automatic, layer.visibility, layer.id);
+  auto formula = app::read_formula(
+      room, body.expression ? *body.expression : layer.formula->expression, automatic, layer);
   if (!formula) return tl::unexpected(formula.error());
   // A different expression will overwrite the painted values.
   const bool is_other = !layer.formula || layer.formula->expression != formula->expression;
