@@ -656,6 +656,23 @@ BEGIN
   END IF;
 END $$;
 
+CREATE FUNCTION public.photograph_deletion_is_audited() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  IF coalesce(nullif(current_setting('strata.actor', true), ''), activity_author()) = '' THEN
+    RETURN NULL;
+  END IF;
+  PERFORM audit('deletion', 'photograph', CASE WHEN part.photographs = 1 THEN part.id END,
+    CASE WHEN part.photographs = 1 THEN part.name ELSE '' END, part.project_id,
+    jsonb_build_object('model', part.model_id, 'photographs', part.photographs))
+  FROM (
+    SELECT m.id AS model_id, m.project_id, count(*) AS photographs, min(g.id) AS id, min(g.name) AS name
+    FROM gone g JOIN all_models m ON m.id = g.model_id AND NOT m.erasing GROUP BY m.id, m.project_id
+  ) part;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.project_group_is_activity() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -1814,6 +1831,40 @@ CREATE TABLE public.personal_views (
     CONSTRAINT personal_views_content_check CHECK ((octet_length((content)::text) <= 1048576))
 );
 
+CREATE TABLE public.photographs (
+    id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    name text NOT NULL COLLATE pg_catalog."C",
+    lens text NOT NULL,
+    unit text NOT NULL,
+    calibrated_width integer NOT NULL,
+    calibrated_height integer NOT NULL,
+    calibration double precision[] NOT NULL,
+    pose double precision[] NOT NULL,
+    sha256 bytea,
+    media_type text,
+    width integer,
+    height integer,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT photographs_calibrated_height_check CHECK ((calibrated_height >= 0)),
+    CONSTRAINT photographs_calibrated_width_check CHECK ((calibrated_width >= 0)),
+    CONSTRAINT photographs_calibration_check CHECK ((cardinality(calibration) = 15)),
+    CONSTRAINT photographs_check CHECK ((num_nulls(sha256, media_type, width, height) = ANY (ARRAY[0, 4]))),
+    CONSTRAINT photographs_lens_check CHECK ((lens = ANY (ARRAY['pinhole'::text, 'brown'::text, 'rational'::text, 'fisheye'::text, 'division'::text]))),
+    CONSTRAINT photographs_name_check CHECK (((octet_length(name) >= 1) AND (octet_length(name) <= 1024))),
+    CONSTRAINT photographs_pose_check CHECK ((cardinality(pose) = 12)),
+    CONSTRAINT photographs_unit_check CHECK ((unit = ANY (ARRAY['pixel'::text, 'longest_side'::text])))
+);
+
+ALTER TABLE public.photographs ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.photographs_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.presence_channel (
     one boolean DEFAULT true NOT NULL,
     name text NOT NULL,
@@ -2229,6 +2280,12 @@ ALTER TABLE ONLY public.pending_sign_ins
 ALTER TABLE ONLY public.personal_views
     ADD CONSTRAINT personal_views_pkey PRIMARY KEY (user_id, model_id);
 
+ALTER TABLE ONLY public.photographs
+    ADD CONSTRAINT photographs_model_id_name_key UNIQUE (model_id, name);
+
+ALTER TABLE ONLY public.photographs
+    ADD CONSTRAINT photographs_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.presence_channel
     ADD CONSTRAINT presence_channel_pkey PRIMARY KEY (one);
 
@@ -2436,6 +2493,8 @@ CREATE INDEX pending_sign_ins_expires ON public.pending_sign_ins USING btree (ex
 
 CREATE INDEX personal_views_model ON public.personal_views USING btree (model_id);
 
+CREATE INDEX photographs_blob ON public.photographs USING btree (sha256) WHERE (sha256 IS NOT NULL);
+
 CREATE INDEX project_groups_project ON public.project_groups USING btree (project_id);
 
 CREATE INDEX project_members_project ON public.project_members USING btree (project_id);
@@ -2557,6 +2616,8 @@ CREATE TRIGGER model_in_trash_is_audited AFTER UPDATE OF binned, erasing ON publ
 CREATE TRIGGER model_is_activity AFTER INSERT OR UPDATE OF name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, object_id, survey_date ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('model');
 
 CREATE TRIGGER new_selection_is_activity AFTER INSERT ON public.selections FOR EACH ROW WHEN (((new.content ->> 'audience'::text) = 'everyone'::text)) EXECUTE FUNCTION public.thing_is_activity('selection');
+
+CREATE TRIGGER photograph_deletion_is_audited AFTER DELETE ON public.photographs REFERENCING OLD TABLE AS gone FOR EACH STATEMENT EXECUTE FUNCTION public.photograph_deletion_is_audited();
 
 CREATE TRIGGER project_deletion_is_audited AFTER DELETE ON public.projects FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('project');
 
@@ -2740,6 +2801,12 @@ ALTER TABLE ONLY public.personal_views
 
 ALTER TABLE ONLY public.personal_views
     ADD CONSTRAINT personal_views_user_id_fkey FOREIGN KEY (user_id) REFERENCES public.users(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.photographs
+    ADD CONSTRAINT photographs_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.photographs
+    ADD CONSTRAINT photographs_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256);
 
 ALTER TABLE ONLY public.project_groups
     ADD CONSTRAINT project_groups_group_id_fkey FOREIGN KEY (group_id) REFERENCES public.groups(id) ON DELETE CASCADE;

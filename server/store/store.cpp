@@ -54,6 +54,7 @@ Jobs& Store::jobs() { return impl_->jobs; }
 Nodes& Store::nodes() { return impl_->nodes; }
 Kiosks& Store::kiosks() { return impl_->kiosks; }
 TourFiles& Store::tour_files() { return impl_->tour_files; }
+Photographs& Store::photographs() { return impl_->photographs; }
 Groups& Store::groups() { return impl_->groups; }
 Trash& Store::trash() { return impl_->trash; }
 Audit& Store::audit() { return impl_->audit; }

@@ -32,6 +32,7 @@ class NamedParts;
 class Nodes;
 class Objects;
 class PersonalViews;
+class Photographs;
 class Projects;
 class Records;
 class SignOns;
@@ -99,6 +100,7 @@ class Store {
   Nodes& nodes();
   Kiosks& kiosks();
   TourFiles& tour_files();
+  Photographs& photographs();  // store/content/photographs.h
   Groups& groups();
   Trash& trash();
   Audit& audit();       // store/people/audit.h

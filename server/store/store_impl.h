@@ -13,6 +13,7 @@
 #include "store/content/models.h"
 #include "store/content/named_parts.h"
 #include "store/content/objects.h"
+#include "store/content/photographs.h"
 #include "store/content/projects.h"
 #include "store/content/surface_images.h"
 #include "store/content/tools.h"
@@ -128,6 +129,7 @@ struct Store::Impl {
   NamedParts views{pool, NamedParts::kViews}, tours{pool, NamedParts::kTours};
   Kiosks kiosks{pool};
   TourFiles tour_files{pool, blobs};
+  Photographs photographs{pool, blobs};
   Jobs jobs{pool};
   Nodes nodes{pool};
   Groups groups{pool};

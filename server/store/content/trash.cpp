@@ -90,7 +90,8 @@ constexpr auto kBlobsOfModel = sql(
     "SELECT geometry FROM all_models WHERE id = $1 UNION "
     "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION "
     "SELECT geometry FROM detail_levels WHERE model_id = $1 UNION "
-    "SELECT f.sha256 FROM tour_files f JOIN tours t ON t.id = f.tour_id WHERE t.model_id = $1");
+    "SELECT f.sha256 FROM tour_files f JOIN tours t ON t.id = f.tour_id WHERE t.model_id = $1 UNION "
+    "SELECT sha256 FROM photographs WHERE model_id = $1 AND sha256 IS NOT NULL");
 
 Result<void> erase_model(PgConnection& connection, ModelId id) {
   auto used = STRATA_TRY(connection.query(kBlobsOfModel, Params().id(id)));

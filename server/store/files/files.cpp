@@ -509,7 +509,9 @@ Result<std::string> Files::users_of(Bytes hash) {
         "JOIN all_models m ON m.id = l.model_id WHERE l.picture = $1 UNION "
         "SELECT 'attachment ' || a.id || ' ' || a.name FROM attachments a WHERE a.sha256 = $1 UNION "
         "SELECT 'file ' || f.name || ' of tour ' || t.name FROM tour_files f "
-        "JOIN tours t ON t.id = f.tour_id WHERE f.sha256 = $1 ORDER BY 1 LIMIT $2) used",
+        "JOIN tours t ON t.id = f.tour_id WHERE f.sha256 = $1 UNION "
+        "SELECT 'photograph ' || p.name || ' of model ' || m.name FROM photographs p "
+        "JOIN all_models m ON m.id = p.model_id WHERE p.sha256 = $1 ORDER BY 1 LIMIT $2) used",
         Params().bytes(hash).integer(kUsersShown)));
     return row.text(0, 0);
   });

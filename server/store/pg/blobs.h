@@ -88,7 +88,8 @@ inline constexpr auto kIsUnused =
         "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256) "
         "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256) "
         "AND NOT EXISTS (SELECT 1 FROM attachments a WHERE a.sha256 = b.sha256) "
-        "AND NOT EXISTS (SELECT 1 FROM tour_files f WHERE f.sha256 = b.sha256)");
+        "AND NOT EXISTS (SELECT 1 FROM tour_files f WHERE f.sha256 = b.sha256) "
+        "AND NOT EXISTS (SELECT 1 FROM photographs p WHERE p.sha256 = b.sha256)");
 
 // Writes the chunks of a blob that has a row but no chunks.
 Result<void> write_chunks(PgConnection& connection, const Content& content,

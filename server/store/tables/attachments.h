@@ -58,9 +58,9 @@ class Attachments {
                                            std::span<const AttachmentId> ids);
   Result<Attachment> show(AttachmentId id, Visibility visibility,
                           const IdempotentResponse<Attachment>& answer = {});
-  // Reads the content with this hash (hexadecimal), of an attachment or a file of a tour. Passes
-  // the bytes from `begin` up to, but not including, `end` to `sink`, in pieces of at most 1 MiB.
-  // `sink` returns false to stop.
+  // Reads the content with this hash (hexadecimal), of an attachment, a file of a tour or a
+  // photograph. Passes the bytes from `begin` up to, but not including, `end` to `sink`, in pieces
+  // of at most 1 MiB. `sink` returns false to stop.
   Result<void> read(const std::string& sha256, std::uint64_t begin, std::uint64_t end,
                     const std::function<bool(std::span<const std::uint8_t>)>& sink);
   // Thumbnails are stored after they are made. All files with the same content share them.
