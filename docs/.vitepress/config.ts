@@ -25,7 +25,7 @@ const howTo = {
     "interpolate-readings",
     "import-maps",
   ],
-  "Keep records": ["keep-records", "use-lists-of-terms", "attach-files"],
+  "Keep records": ["keep-records", "use-lists-of-terms", "attach-files", "use-photographs"],
   "Work with others": [
     "work-together",
     "comment",

@@ -190,6 +190,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_shape_routes(router_, context_);
   add_map_routes(router_, context_);
   add_orthophoto_routes(router_, context_);
+  add_photograph_routes(router_, context_);
   page_.pattern = "/";
   page_.role = std::nullopt;
   page_.any_query = true;

@@ -57,6 +57,7 @@ void add_cleanup_routes(Router& router, const RouteContext& context);
 void add_analysis_routes(Router& router, const RouteContext& context);
 void add_shape_routes(Router& router, const RouteContext& context);
 void add_map_routes(Router& router, const RouteContext& context);
+void add_photograph_routes(Router& router, const RouteContext& context);
 void add_orthophoto_routes(Router& router, const RouteContext& context);
 
 }  // namespace strata::net

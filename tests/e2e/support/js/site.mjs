@@ -70,6 +70,10 @@ const kTermsTurtle =
 const kTermsRdf =
   '<?xml version="1.0"?><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#" xmlns:skos="http://www.w3.org/2004/02/skos/core#"><skos:Concept rdf:about="urn:d:soot"><skos:notation>soot</skos:notation><skos:prefLabel xml:lang="en">Soot</skos:prefLabel></skos:Concept></rdf:RDF>';
 
+/** The camera of a photograph of the wall, in a format of RealityCapture. */
+const poses_of = (name) =>
+  `#name,x,y,alt,heading,pitch,roll,f\n${name},50,50,300,0,0,0,35\n`;
+
 const kColumns = [
   { name: "Code", required: true, unique: true },
   { name: "Depth", kind: "numeric", unit: "m" },
@@ -100,6 +104,7 @@ export class Site {
     "readings.csv": Buffer.from("x,y,z,value\n20,20,0,1\n60,40,0,2\n"),
     "vertices.csv": Buffer.from("1\n".repeat((kSide + 1) ** 2)),
     "empty.zip": Buffer.concat([Buffer.from("PK\x05\x06"), Buffer.alloc(18)]),
+    "poses.csv": Buffer.from(poses_of("picture.png")),
     "letter.txt": Buffer.from("A letter of 1903.\n"),
     "noise.bin": Buffer.from(Array.from({ length: 3000 }, (_, n) => (n * n * 31) % 256)),
   };
@@ -180,6 +185,8 @@ export class Site {
     await this.#post("/tables/units/records/1/attachments?name=north.png", "picture.png");
     await this.#post("/tables/units/records/1/attachments?name=letter.txt", "letter.txt");
     await this.#post("/models/wall/looks?name=Infrared", "picture.png", "image/png");
+    await this.#post("/models/wall/photograph-poses?filename=poses.csv", "poses.csv");
+    await this.#post("/models/wall/photographs?filename=picture.png", "picture.png", "image/png");
     await this.#post("/tools?name=Leaf&part=dark", "picture.png", "image/png");
     for (const [name, type] of [
       ["Cracks", "u8"],
@@ -368,6 +375,11 @@ export class Site {
             "image/png",
           )
         ).slug;
+      case "photograph": {
+        await this.#post("/models/wall/photograph-poses", Buffer.from(poses_of(name)));
+        const { photographs } = await server.json("GET", "/models/wall/photographs");
+        return String(photographs.find((photograph) => photograph.name === name).id);
+      }
       case "tool":
         return (
           await this.#post(`/tools?name=${encodeURIComponent(name)}`, "picture.png", "image/png")

@@ -133,6 +133,7 @@ export const path_words = {
   model: mostly("wall", "wall", "wall-2"),
   layer: mostly(...kLayers),
   look: mostly("infrared", "1"),
+  photograph: mostly("1"),
   view: mostly("west", "1"),
   tour: mostly("round", "1"),
   snapshot: mostly("first", "1"),
@@ -215,6 +216,7 @@ const json = (schema_words) => ({
 });
 const world = "4,0,0,-4,2,90"; // for the picture of 24 × 16 pixels
 const scratch = { path: { table: one("scratch") } };
+const of_photograph = { path: { model: one("wall"), photograph: mostly("1") } };
 const units_layer = {
   path: { model: one("wall"), layer: one("units", "units", "units", "cracks") },
 };
@@ -309,6 +311,23 @@ export const particulars = {
   delete_layer: { path: { model: one("wall"), ...spare("layer") } },
   delete_look: { path: { model: one("wall-2"), ...spare("look") } },
   create_look: { path: { model: one("wall") } },
+  import_photograph_poses: {
+    content: { "application/octet-stream": file("poses.csv", "poses.csv", "noise.bin") },
+  },
+  add_photograph_picture: {
+    path: { model: one("wall") },
+    queries: one({ filename: "site/Picture.png" }, { filename: "other.png" }),
+    content: { "image/png": file("picture.png") },
+  },
+  get_photograph: of_photograph,
+  get_photograph_picture: of_photograph,
+  get_undistorted_photograph: of_photograph,
+  set_photograph_picture: {
+    ...of_photograph,
+    content: { "image/png": file("picture.png", "picture.png", "noise.bin") },
+  },
+  delete_photograph: { path: { model: one("wall"), ...spare("photograph") } },
+  delete_photographs: { path: { model: one("wall-2") } },
   delete_tool: { path: spare("tool") },
   delete_table: { path: spare("table", "units") },
   delete_record: { path: { table: one("units"), ...spare("key", "1") }, queries: what_of_texels },
