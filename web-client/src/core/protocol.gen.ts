@@ -2904,7 +2904,7 @@ export interface Photograph {
   camera?: Camera;
   has_picture: boolean;
   /** Media type of the original. Absent without an image. */
-  media_type?: "image/jpeg" | "image/png" | "image/tiff";
+  media_type?: string;
   /** Size of the original. Absent without an image. */
   bytes?: number;
 }

@@ -919,6 +919,26 @@ void read(const nlohmann::json& json, ShapeRecipeKind& value) {
 
 nlohmann::json to_json(const ShapeRecipeKind& value) { return name(value); }
 
+std::string_view name(PosesReportFormat value) {
+  switch (value) {
+    case PosesReportFormat::colmap: return "colmap";
+    case PosesReportFormat::metashape: return "metashape";
+    case PosesReportFormat::realitycapture: return "realitycapture";
+    case PosesReportFormat::bundler: return "bundler";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, PosesReportFormat& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "colmap") value = PosesReportFormat::colmap;
+  if (text == "metashape") value = PosesReportFormat::metashape;
+  if (text == "realitycapture") value = PosesReportFormat::realitycapture;
+  if (text == "bundler") value = PosesReportFormat::bundler;
+}
+
+nlohmann::json to_json(const PosesReportFormat& value) { return name(value); }
+
 std::string_view name(ReviewState value) {
   switch (value) {
     case ReviewState::pending: return "pending";
@@ -3528,6 +3548,95 @@ nlohmann::json to_json(const VertexPropertyList& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, Photograph& value) {
+  read_member(json, "id", value.id);
+  read_member(json, "name", value.name);
+  read_member(json, "center", value.center);
+  read_optional_member(json, "width", value.width);
+  read_optional_member(json, "height", value.height);
+  read_optional_member(json, "camera", value.camera);
+  read_member(json, "has_picture", value.has_picture);
+  read_optional_member(json, "media_type", value.media_type);
+  read_optional_member(json, "bytes", value.bytes);
+}
+
+nlohmann::json to_json(const Photograph& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "id", value.id);
+  write_member(json, "name", value.name);
+  write_member(json, "center", value.center);
+  write_optional_member(json, "width", value.width);
+  write_optional_member(json, "height", value.height);
+  write_optional_member(json, "camera", value.camera);
+  write_member(json, "has_picture", value.has_picture);
+  write_optional_member(json, "media_type", value.media_type);
+  write_optional_member(json, "bytes", value.bytes);
+  return json;
+}
+
+Result<void> check(const Photograph& value, const std::string& field) {
+  if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, PhotographList& value) {
+  read_member(json, "photographs", value.photographs);
+  read_member(json, "total", value.total);
+  read_member(json, "with_picture", value.with_picture);
+}
+
+nlohmann::json to_json(const PhotographList& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "photographs", value.photographs);
+  write_member(json, "total", value.total);
+  write_member(json, "with_picture", value.with_picture);
+  return json;
+}
+
+Result<void> check([[maybe_unused]] const PhotographList& value, [[maybe_unused]] const std::string& field) {
+  return {};
+}
+
+void read(const nlohmann::json& json, RefusedPhotograph& value) {
+  read_member(json, "name", value.name);
+  read_member(json, "reason", value.reason);
+}
+
+nlohmann::json to_json(const RefusedPhotograph& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_member(json, "reason", value.reason);
+  return json;
+}
+
+void read(const nlohmann::json& json, PosesReport& value) {
+  read_member(json, "format", value.format);
+  read_member(json, "added", value.added);
+  read_member(json, "updated", value.updated);
+  read_member(json, "refused", value.refused);
+  read_member(json, "refused_total", value.refused_total);
+  read_member(json, "without_pose", value.without_pose);
+  read_member(json, "in_other_components", value.in_other_components);
+  read_member(json, "coordinate_system", value.coordinate_system);
+  read_member(json, "unused_files", value.unused_files);
+  read_member(json, "total", value.total);
+}
+
+nlohmann::json to_json(const PosesReport& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "format", value.format);
+  write_member(json, "added", value.added);
+  write_member(json, "updated", value.updated);
+  write_member(json, "refused", value.refused);
+  write_member(json, "refused_total", value.refused_total);
+  write_member(json, "without_pose", value.without_pose);
+  write_member(json, "in_other_components", value.in_other_components);
+  write_member(json, "coordinate_system", value.coordinate_system);
+  write_member(json, "unused_files", value.unused_files);
+  write_member(json, "total", value.total);
+  return json;
+}
+
 void read(const nlohmann::json& json, PhotographsSeeingRequest& value) {
   read_member(json, "at", value.at);
   read_optional_member(json, "limit", value.limit);
@@ -3544,6 +3653,53 @@ nlohmann::json to_json(const PhotographsSeeingRequest& value) {
 
 Result<void> check(const PhotographsSeeingRequest& value, const std::string& field) {
   if (auto ok = check(value.at, join_field(field, "at")); !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, SeeingPhotograph& value) {
+  read_member(json, "photograph", value.photograph);
+  read_member(json, "pixel", value.pixel);
+  read_member(json, "undistorted_pixel", value.undistorted_pixel);
+  read_member(json, "mm_per_pixel", value.mm_per_pixel);
+  read_member(json, "angle", value.angle);
+  read_member(json, "distance_m", value.distance_m);
+}
+
+nlohmann::json to_json(const SeeingPhotograph& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "photograph", value.photograph);
+  write_member(json, "pixel", value.pixel);
+  write_member(json, "undistorted_pixel", value.undistorted_pixel);
+  write_member(json, "mm_per_pixel", value.mm_per_pixel);
+  write_member(json, "angle", value.angle);
+  write_member(json, "distance_m", value.distance_m);
+  return json;
+}
+
+Result<void> check(const SeeingPhotograph& value, const std::string& field) {
+  if (auto ok = check(value.photograph, join_field(field, "photograph")); !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, PhotographsSeeing& value) {
+  read_optional_member(json, "position", value.position);
+  read_optional_member(json, "normal", value.normal);
+  read_member(json, "photographs", value.photographs);
+  read_member(json, "total", value.total);
+  read_member(json, "unknown_size", value.unknown_size);
+}
+
+nlohmann::json to_json(const PhotographsSeeing& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "position", value.position);
+  write_optional_member(json, "normal", value.normal);
+  write_member(json, "photographs", value.photographs);
+  write_member(json, "total", value.total);
+  write_member(json, "unknown_size", value.unknown_size);
+  return json;
+}
+
+Result<void> check([[maybe_unused]] const PhotographsSeeing& value, [[maybe_unused]] const std::string& field) {
   return {};
 }
 

@@ -2714,6 +2714,82 @@ nlohmann::json to_json(const VertexPropertyList& value);
 template <>
 inline constexpr Schema kSchemaOf<VertexPropertyList> = Schema::VertexPropertyList;
 
+// Photograph with a camera pose. The pixels of the original have their origin in the upper left corner of the image as it is stored, without the turn in its Exif data.
+struct Photograph {
+  std::int64_t id = 0;
+  // Name in the export of the photogrammetry program, with folders if the program writes them.
+  // Unique in the model.
+  std::string name;
+  glm::dvec3 center{0};  // Position of the camera, in world coordinates.
+  // Width of the original in pixels. Absent if neither the export nor an image states it.
+  std::optional<int> width;
+  std::optional<int> height;
+  // Pinhole camera of the undistorted image. `width` and `height` are the size of the undistorted
+  // image, and its longer side has at most 4096 pixels. Absent while the size of the original is
+  // unknown.
+  std::optional<strata::Camera> camera;
+  bool has_picture = false;
+  std::optional<std::string> media_type;  // Media type of the original. Absent without an image.
+  std::optional<std::int64_t> bytes;  // Size of the original. Absent without an image.
+  bool operator==(const Photograph&) const = default;
+};
+void read(const nlohmann::json& json, Photograph& value);
+nlohmann::json to_json(const Photograph& value);
+Result<void> check(const Photograph& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<Photograph> = Schema::Photograph;
+
+// Photographs of a model, sorted by name.
+struct PhotographList {
+  std::vector<Photograph> photographs;
+  int total = 0;  // Number of photographs of the model.
+  int with_picture = 0;  // Number of photographs of the model that have an image.
+  bool operator==(const PhotographList&) const = default;
+};
+void read(const nlohmann::json& json, PhotographList& value);
+nlohmann::json to_json(const PhotographList& value);
+Result<void> check(const PhotographList& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<PhotographList> = Schema::PhotographList;
+
+// Photograph that was not added.
+struct RefusedPhotograph {
+  std::string name;
+  std::string reason;  // A text for people.
+  bool operator==(const RefusedPhotograph&) const = default;
+};
+void read(const nlohmann::json& json, RefusedPhotograph& value);
+nlohmann::json to_json(const RefusedPhotograph& value);
+template <>
+inline constexpr Schema kSchemaOf<RefusedPhotograph> = Schema::RefusedPhotograph;
+
+enum class PosesReportFormat { colmap, metashape, realitycapture, bundler };
+std::string_view name(PosesReportFormat value);
+void read(const nlohmann::json& json, PosesReportFormat& value);
+nlohmann::json to_json(const PosesReportFormat& value);
+
+// Result of an import of camera poses.
+struct PosesReport {
+  PosesReportFormat format{};
+  int added = 0;
+  // Number of photographs that already existed and whose pose and calibration were replaced.
+  int updated = 0;
+  std::vector<RefusedPhotograph> refused;  // The first 100 photographs that were not added.
+  int refused_total = 0;
+  int without_pose = 0;  // Number of photographs that the program did not align.
+  // Number of photographs that Metashape aligned separately from the others.
+  int in_other_components = 0;
+  // The coordinate system that the export names, as WKT. Empty if it names none.
+  std::string coordinate_system;
+  std::vector<std::string> unused_files;  // The first 100 files that the server did not need.
+  int total = 0;  // Number of photographs of the model after the import.
+  bool operator==(const PosesReport&) const = default;
+};
+void read(const nlohmann::json& json, PosesReport& value);
+nlohmann::json to_json(const PosesReport& value);
+template <>
+inline constexpr Schema kSchemaOf<PosesReport> = Schema::PosesReport;
+
 // Photographs that see a place.
 struct PhotographsSeeingRequest {
   SurfacePlace at;
@@ -2726,6 +2802,42 @@ nlohmann::json to_json(const PhotographsSeeingRequest& value);
 Result<void> check(const PhotographsSeeingRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<PhotographsSeeingRequest> = Schema::PhotographsSeeingRequest;
+
+// Photograph that sees a place.
+struct SeeingPhotograph {
+  Photograph photograph;
+  glm::dvec2 pixel{0};  // Pixel of the place in the original.
+  glm::dvec2 undistorted_pixel{0};  // Pixel of the place in the window of `photograph.camera`.
+  // Size of a pixel of the original at the place, across the direction of view, in millimeters.
+  double mm_per_pixel = 0;
+  // Angle between the direction to the camera and the normal of the surface, in degrees.
+  double angle = 0;
+  double distance_m = 0;  // Distance from the camera in meters.
+  bool operator==(const SeeingPhotograph&) const = default;
+};
+void read(const nlohmann::json& json, SeeingPhotograph& value);
+nlohmann::json to_json(const SeeingPhotograph& value);
+Result<void> check(const SeeingPhotograph& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<SeeingPhotograph> = Schema::SeeingPhotograph;
+
+// Photographs that see a place, best first.
+struct PhotographsSeeing {
+  // The point of the surface, in world coordinates. Absent if there is none at the pixel.
+  std::optional<glm::dvec3> position;
+  std::optional<glm::dvec3> normal;
+  std::vector<SeeingPhotograph> photographs;
+  int total = 0;  // Number of photographs that see the place.
+  // Number of photographs that were left out because their size in pixels is unknown. They need an
+  // image.
+  int unknown_size = 0;
+  bool operator==(const PhotographsSeeing&) const = default;
+};
+void read(const nlohmann::json& json, PhotographsSeeing& value);
+nlohmann::json to_json(const PhotographsSeeing& value);
+Result<void> check(const PhotographsSeeing& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<PhotographsSeeing> = Schema::PhotographsSeeing;
 
 // First comment of a thread.
 struct CommentCreate {
