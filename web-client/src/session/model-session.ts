@@ -27,6 +27,7 @@ import type { Painting } from "../features/painting/painting";
 import type { SavedSelections } from "../features/painting/saved-selections";
 import type { Selection } from "../features/painting/selection";
 import type { Strokes } from "../features/painting/strokes";
+import type { Photographs } from "../features/photographs/photographs";
 import type { Past } from "../features/past/past";
 import type { Visits } from "../features/past/visits";
 import type { PeopleCursors } from "../features/presence/people-cursors";
@@ -70,6 +71,7 @@ export type SessionPart =
       | "reviews"
       | "hovered"
       | "together"
+      | "photographs"
       | "views"
       | "surveys"
       | "tours"
@@ -101,6 +103,7 @@ export interface ModelSession {
   /** The strokes inside and outside of an area; null until they are loaded. */
   readonly strokes: Strokes | null;
   savedSelections: SavedSelections | null; // made at its first use
+  photographs: Photographs | null; // made at its first use
   readonly past: Past;
   readonly visits: Visits;
   readonly shapes: ToolShapes;
@@ -130,6 +133,8 @@ export interface ModelSession {
    * itself.
    */
   subscribe(listener: () => void, parts?: readonly SessionPart[]): () => void;
+  /** Tells the listeners that a part has changed. */
+  changed(part: SessionPart): void;
   /** Ends the connection. Unsaved changes are sent when the same user opens the model again. */
   discard(): void;
   checkConnection(): void;

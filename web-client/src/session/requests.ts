@@ -45,7 +45,7 @@ export interface SelectionRequest {
   dialog: "selections" | "save-selection" | "selection-statistics";
 }
 
-/** The dialog that unrolls the model, or the dialog for a condition report. */
+/** The dialog that unrolls the model, the dialog for a condition report, or the photographs. */
 export interface ModelDialogRequest {
-  dialog: "rollout" | "report";
+  dialog: "rollout" | "report" | "photographs";
 }

@@ -12,6 +12,8 @@ import "../features/account/kiosks-dialog";
 import "../features/layers/layer-dialog";
 import "../features/layers/map-dialog";
 import "../features/layers/orthophoto-dialog";
+import "../features/photographs/photograph-dialog";
+import "../features/photographs/photographs-dialog";
 import "../features/layers/pieces-dialog";
 import "../features/records/photos-dialog";
 import "../features/records/record-dialog";
@@ -40,4 +42,6 @@ export { sharpFrames } from "../features/painting/sharp-frame";
 export { makeStrokes, selectionOf } from "../features/painting/selection-of";
 export { selectionOverlay } from "../features/painting/selection-overlay";
 export { strokesOverlay } from "../features/painting/strokes-overlay";
+
+export { placeOverlay } from "../features/photographs/place-overlay";
 export { modelDialog } from "./open-dialog";

@@ -228,6 +228,9 @@ function ofModel(host: PageHost): Command[] {
   return [
     opening(host, group, "info", texts.model.details, { dialog: "about" }),
     opening(host, texts.figures.title, "document", texts.figures.unroll, { dialog: "rollout" }),
+    opening(host, texts.view.photographs, "picture", texts.view.open_photographs, {
+      dialog: "photographs",
+    }),
     opening(host, group, "document", texts.condition_report.open, { dialog: "report" }),
     ...(session.canCurate
       ? [opening(host, group, "measure", texts.model.correct_size, { dialog: "scale" })]

@@ -2,7 +2,7 @@
 // `model_dialogs`.
 
 import { html, nothing, type TemplateResult } from "lit";
-import type { TourEntry } from "../core/protocol.gen";
+import type { Photograph, TourEntry } from "../core/protocol.gen";
 import type { Layer, Me, Model } from "../core/types";
 import type { LayerPanelRequest } from "../features/layers/layer-panel";
 import type { WhereRequest } from "../features/painting/brush-panel";
@@ -25,6 +25,7 @@ export type OpenDialog =
   | WhereRequest
   | SelectionRequest
   | Extract<TourRequest, { dialog: "kiosks" }>
+  | { dialog: "photograph"; photograph: Photograph }
   | { dialog: "scale" | "help" | "about" | "orthophoto" | "commands" | "changes" };
 
 /** The interface of the page for its commands and dialogs. */
@@ -136,6 +137,18 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
         @figure=${() => host.show({ dialog: "figure", view: null, unrolled: true })}
         @closed=${closed}
       ></strata-rollout-dialog>`;
+    case "photographs":
+      return html`<strata-photographs-dialog
+        .session=${session}
+        @opened=${({ detail }: CustomEvent<Photograph>) => host.show({ dialog: "photograph", photograph: detail })}
+        @closed=${closed}
+      ></strata-photographs-dialog>`;
+    case "photograph":
+      return html`<strata-photograph-dialog
+        .session=${session}
+        .photograph=${dialog.photograph}
+        @closed=${() => host.show({ dialog: "photographs" })}
+      ></strata-photograph-dialog>`;
     case "report":
       return html`<strata-report-dialog .session=${session} @closed=${closed}></strata-report-dialog>`;
     case "kiosks":

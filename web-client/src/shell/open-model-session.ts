@@ -51,6 +51,7 @@ import { Measuring } from "../features/measuring/measuring";
 import { notices } from "../ui/notices";
 import { Painting } from "../features/painting/painting";
 import type { EdgeSnapper } from "../features/painting/edge-snapper";
+import type { Photographs } from "../features/photographs/photographs";
 import type { SavedSelections } from "../features/painting/saved-selections";
 import type { Selection } from "../features/painting/selection";
 import type { SharpFrame, sharpFrames, ShownFrame } from "../features/painting/sharp-frame";
@@ -129,6 +130,7 @@ export class OpenModelSession implements ModelSession {
   readonly tools: ToolManager;
   selection: Selection | null = null;
   savedSelections: SavedSelections | null = null;
+  photographs: Photographs | null = null;
   /** The stage sets these callbacks. */
   onFrame: (part: FrameMessage) => void = () => {};
   onResetFrames: () => void = () => {};
@@ -228,7 +230,10 @@ export class OpenModelSession implements ModelSession {
         this.painting.takePicked(message);
         this.tables.showCard(this.layers.selected, message);
       },
-      looked: (message) => this.tables.showCard(this._sight.layerWithRecord(message), message),
+      looked: (message) => {
+        this.tables.showCard(this._sight.layerWithRecord(message), message);
+        if (message.hit && message.position) this.photographs?.lookAt(message.position);
+      },
       learned: () => this.hovered.picked(),
       changed: changes("pointer"),
     });
@@ -549,7 +554,7 @@ export class OpenModelSession implements ModelSession {
     this.changed(part);
   }
 
-  private changed(part: SessionPart = "session"): void {
+  changed(part: SessionPart = "session"): void {
     this._signals.tell(part);
   }
 

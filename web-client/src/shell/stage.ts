@@ -270,6 +270,7 @@ export class StrataStage extends LitElement {
         ${tool === "strokes" ? this.strokes() : nothing}
         ${outline ? outlineOverlay(session, outline) : nothing}
         ${tool === "measure" ? measureOverlay(session) : nothing}
+        ${session.photographs?.isOpen ? this.photographedPlace() : nothing}
       </div>
       ${selects ? html`<strata-selection-bar .session=${session}></strata-selection-bar>` : nothing}
       <strata-people-overlay .session=${session}></strata-people-overlay>
@@ -286,6 +287,11 @@ export class StrataStage extends LitElement {
     if (!selection || selection.isEmpty) return nothing;
     const { selectionOverlay } = partOf("model_dialogs") as typeof import("./model-dialogs");
     return selectionOverlay(selection, this.session.view.scale);
+  }
+
+  private photographedPlace(): TemplateResult | typeof nothing {
+    const { placeOverlay } = partOf("model_dialogs") as typeof import("./model-dialogs");
+    return placeOverlay(this.session);
   }
 
   private strokes(): TemplateResult | typeof nothing {

@@ -1571,6 +1571,8 @@ export const texts = {
   },
 
   view: {
+    photographs: "Fotografien",
+    open_photographs: "Fotografien einer Stelle …",
     title: "Ansicht",
     changed: "Ihre Ansicht weicht von der Vorgabe ab",
     reset: "Zurücksetzen",

@@ -1531,6 +1531,8 @@ export const texts = {
   },
 
   view: {
+    photographs: "Photographs",
+    open_photographs: "Photographs of a place…",
     title: "View",
     changed: "Your view differs from the default",
     reset: "Reset",

@@ -1560,6 +1560,8 @@ export const texts = {
   },
 
   view: {
+    photographs: "Fotografías",
+    open_photographs: "Fotografías de un lugar…",
     title: "Vista",
     changed: "Su vista difiere de la predeterminada",
     reset: "Restablecer",

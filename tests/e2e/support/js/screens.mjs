@@ -713,6 +713,15 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       end: close_dialog,
     },
     {
+      name: "photographs of a place",
+      start: async () => {
+        await open_tab(page, w, w.view.title);
+        await open(button(w.view.open_photographs));
+        await page.locator("strata-photographs-dialog strata-file-choice").first().waitFor();
+      },
+      end: close_dialog,
+    },
+    {
       name: "condition report",
       start: async () => {
         await open_tab(page, w, w.view.title);

@@ -91,6 +91,10 @@ export class StrataViewPanel extends SidePanel {
       <div><button @click=${() => show("rollout")}>${icon("measure")}${texts.figures.unroll}</button></div>
     </div>
     <div class="part">
+      <h3>${texts.view.photographs}</h3>
+      <div><button @click=${() => show("photographs")}>${icon("picture")}${texts.view.open_photographs}</button></div>
+    </div>
+    <div class="part">
       <h3>${texts.condition_report.title}</h3>
       <div><button @click=${() => show("report")}>${icon("document")}${texts.condition_report.open}</button></div>
     </div>`;

@@ -4,6 +4,7 @@
 
 import { css, html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
+import { styled } from "../../ui/styled";
 import { sharedStyles } from "../../ui/styles";
 import {
   PictureDrawing,
@@ -20,6 +21,9 @@ const kSnapPx = 10; // CSS pixels
 export class StrataPictureCanvas extends LitElement {
   /** The address of the picture. */
   @property() picture = "";
+  /** The address of a picture of the same place that lies over it. */
+  @property() over = "";
+  @property({ attribute: false }) overOpacity = 1;
   /** What the picture shows. */
   @property() alt = "";
   /** The name of the place where the user draws. */
@@ -38,7 +42,7 @@ export class StrataPictureCanvas extends LitElement {
   @property({ type: Boolean, reflect: true }) zoomed = false;
   @state() private _size: readonly [number, number] = [0, 0]; // of the picture
   @state() private _hover: PicturePoint | null = null;
-  @query("img") private _img!: HTMLImageElement | null;
+  @query("img:not(.over)") private _img!: HTMLImageElement | null;
 
   private readonly _drawing = new PictureDrawing({
     tool: () => this.tool,
@@ -72,8 +76,17 @@ export class StrataPictureCanvas extends LitElement {
         outline: var(--edge) solid var(--line);
         outline-offset: calc(-1 * var(--edge));
       }
+      img.over {
+        position: absolute;
+        inset: 0;
+        width: 100%;
+        height: 100%;
+        max-height: none;
+        background: none;
+        pointer-events: none;
+      }
       :host([zoomed]) .sheet,
-      :host([zoomed]) img {
+      :host([zoomed]) img:not(.over) {
         max-width: none;
         max-height: none;
       }
@@ -120,6 +133,7 @@ export class StrataPictureCanvas extends LitElement {
         @dragstart=${(event: Event) => event.preventDefault()}
       >
         <img src=${this.picture} alt=${draws ? "" : this.alt} @load=${this.onLoad} />
+        ${this.over ? html`<img class="over" src=${this.over} alt="" ${styled({ opacity: String(this.overOpacity) })} />` : nothing}
         ${this._size[0] > 0 ? this.overlay() : nothing}
       </div>`;
   }
