@@ -113,14 +113,14 @@ def shapes(side, mm):
 
 def cleanups(side, mm):
     """Returns [(words, body)], for the layer of classes."""
-    width, cm2 = side * 0.012 * mm, (side * mm / 10) ** 2 * 4e-4
+    width, cm2 = side * 0.03 * mm, (side * mm / 10) ** 2 * 1.5e-3
     return [
         ("remove small regions", {"operation": "sieve", "area_cm2": cm2}),
         ("fill small holes", {"operation": "fill-holes", "area_cm2": cm2}),
         ("smooth by majority", {"operation": "majority", "radius_mm": width / 2}),
         ("remove narrow parts of 3", {"operation": "open", "of": 3, "width_mm": width}),
         ("close narrow gaps of 3", {"operation": "close", "of": 3, "width_mm": width}),
-        ("paint the border of 3", {"operation": "border", "of": 3, "width_mm": width, "value": 9}),
+        ("paint the border of 3", {"operation": "border", "of": 3, "width_mm": width / 3, "value": 2}),
     ]
 
 
@@ -153,7 +153,7 @@ class Sheet:
         start = time.monotonic()
         self.server.ok("PATCH", f"{self.path}/layers/{slug}", {"locked": False})
         job = self.server.ok("POST", f"{self.path}/layers/{slug}/cleanup", body).json()
-        self.ended(job)
+        assert self.ended(job)["cleanup"]["texels"] > 0, f"{body} changed nothing"
         return time.monotonic() - start
 
     def picture(self, slug):

@@ -95,6 +95,9 @@ def make_site(server):
         {"name": "Sunny", "audience": "everyone", "within": {"where": "true"}},
     )
     picture = server.ok("POST", M + "/tours/round/files?name=west.png", plain(64)).json()["id"]
+    poses = b"#name,x,y,alt,heading,pitch,roll,f\nwest.png,50,50,300,0,0,0,35\n"
+    server.ok("POST", M + "/photograph-poses?filename=poses.csv", poses)
+    photograph = server.ok("POST", M + "/photographs?filename=west.png", plain(64)).json()["id"]
     comment = server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()[
         "id"
     ]
@@ -110,6 +113,7 @@ def make_site(server):
         {
             "attachment": str(file),
             "file": str(picture),
+            "photograph": str(photograph),
             "comment": str(comment),
             "group": str(group),
             "object": str(thing),

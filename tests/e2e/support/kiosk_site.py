@@ -160,6 +160,7 @@ def sweep(server, secret, tour, files, thread):
         "tour": tour.rsplit("/", 1)[1],
         "snapshot": "1",
         "selection": "1",
+        "photograph": "1",
         "table": "finds",
         "key": "1",
         "attachment": str(files["public"]),

@@ -170,6 +170,7 @@ def words(server, public):
         "tour": ["round"],
         "snapshot": ["first"],
         "selection": ["sunny"],
+        "photograph": ["1"],
         "file": ["1"],
         "kiosk": ["1"],
         "name": ["sheet.ply"],

@@ -429,9 +429,17 @@ export const particulars = {
   rollout: {
     path: { model: one("wall") },
     ...json({
-      by_name: { mm_per_pixel: one(20, 50, 0), radius: one(0.5, 2, 0), half_angle: one(0, 20, -5) },
+      by_name: {
+        mm_per_pixel: one(20, 50, 50, 0),
+        radius: one(0.5, 2, 2, 0),
+        half_angle: one(0, 20, -5),
+        // most other values are unknown layers and images
+        layers: one([], [{ layer: "cracks", visible: true }], [{ layer: "nothing" }]),
+        looks: one([], []),
+      },
       by_schema: {
         RolloutAxis: one(
+          { point: [0, 0, -1], direction: [0, 1, 0] },
           { point: [0, 0, -1], direction: [0, 1, 0] },
           { point: [0, 0, 0], direction: [0, 0, 0] },
         ),
