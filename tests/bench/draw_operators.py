@@ -120,7 +120,10 @@ def cleanups(side, mm):
         ("smooth by majority", {"operation": "majority", "radius_mm": width / 2}),
         ("remove narrow parts of 3", {"operation": "open", "of": 3, "width_mm": width}),
         ("close narrow gaps of 3", {"operation": "close", "of": 3, "width_mm": width}),
-        ("paint the border of 3", {"operation": "border", "of": 3, "width_mm": width / 3, "value": 2}),
+        (
+            "paint the border of 3",
+            {"operation": "border", "of": 3, "width_mm": width / 3, "value": 2},
+        ),
     ]
 
 

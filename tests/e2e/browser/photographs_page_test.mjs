@@ -1,6 +1,6 @@
 // Photographs with camera poses on the page: poses and an image are imported, the photographs of a
 // place are listed after a click on the model, and a photograph is shown with the model over it and
-// beside it. The user paints on it, and the paint is where the photograph shows it.
+// next to it. The user paints on it, and the paint is where the photograph shows it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";

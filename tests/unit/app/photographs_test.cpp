@@ -137,7 +137,7 @@ double largest_error(const Picture& picture, const photo::Camera& camera, const 
     for (int x = 5; x + 5 < picture.width; ++x) {
       const int left = gray_at(picture, x, y), right = gray_at(picture, x + 1, y);
       if ((left < 128) == (right < 128) || std::abs(left - right) < 60) continue;
-      bool is_shown = true;  // the border of the photograph is none of the pattern
+      bool is_shown = true;  // the border of the photograph is not part of the pattern
       for (const int beside : {-1, 2}) {
         const glm::dvec2 direction =
             direction_of(pinhole, (glm::dvec2(x + beside, y) + 0.5) * scale);

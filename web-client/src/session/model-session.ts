@@ -133,7 +133,7 @@ export interface ModelSession {
    * itself.
    */
   subscribe(listener: () => void, parts?: readonly SessionPart[]): () => void;
-  /** Tells the listeners that a part has changed. */
+  /** Calls the listeners of a part after a change. */
   changed(part: SessionPart): void;
   /** Ends the connection. Unsaved changes are sent when the same user opens the model again. */
   discard(): void;

@@ -70,7 +70,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
   auto slug = STRATA_TRY(slug_of(body.slug, body.name));
   layer.slug = slug;
   layer.kind = body.kind;
-  std::optional<Expression> formula;  // none also for a mistake, which is told later
+  std::optional<Expression> formula;  // none also for a mistake, which read_formula refuses
   if (body.expression)
     if (auto parsed = app::parse_formula(*body.expression)) formula = std::move(*parsed);
   const bool is_condition = formula && formula->is_condition();

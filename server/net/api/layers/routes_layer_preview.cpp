@@ -64,7 +64,7 @@ Result<Response> preview_layer(const RouteContext& context, const Request& reque
       app::preview_layer(context, *room, std::move(*layer), recipe, wanted.palette.has_value(),
                          request.author(), grid, progress);
   if (!made) {
-    if (Question* question = Question::current()) question->check();  // tells why it has ended
+    if (Question* question = Question::current()) question->check();  // throws the reason
     return in_layer(made.error());
   }
   return json_response({{"resolution", made->layer.resolution},

@@ -1,5 +1,5 @@
 // <strata-photograph-dialog>: a photograph without the distortion of its lens, with the model as its
-// camera sees it: over the photograph or beside it. Annotators paint on the photograph.
+// camera sees it: over the photograph or next to it. Annotators paint on the photograph.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
