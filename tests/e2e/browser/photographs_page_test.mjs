@@ -142,8 +142,15 @@ test("a click on the model lists the photographs of the place", async () => {
   const box = await browser.stage_box();
   await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.6 * box.height);
   await list().getByText(words.photographs.seen_by(1)).waitFor();
-  await list().getByRole("button", { name: /FRONT\.jpg/ }).waitFor();
-  assert.equal(await list().getByRole("button", { name: /BACK\.jpg/ }).count(), 0);
+  await list()
+    .getByRole("button", { name: /FRONT\.jpg/ })
+    .waitFor();
+  assert.equal(
+    await list()
+      .getByRole("button", { name: /BACK\.jpg/ })
+      .count(),
+    0,
+  );
   await page.locator("strata-stage svg.over circle").first().waitFor();
   const thumbnail = list().locator("ul.found img");
   await wait_for(
@@ -154,7 +161,9 @@ test("a click on the model lists the photographs of the place", async () => {
 });
 
 test("a photograph is shown with the model, and paint goes where it shows it", async () => {
-  await list().getByRole("button", { name: /FRONT\.jpg/ }).click();
+  await list()
+    .getByRole("button", { name: /FRONT\.jpg/ })
+    .click();
   const canvas = dialog().locator("strata-picture-canvas");
   const photograph = canvas.locator("img").first();
   const model = canvas.locator("img.over");

@@ -71,8 +71,7 @@ const kTermsRdf =
   '<?xml version="1.0"?><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#" xmlns:skos="http://www.w3.org/2004/02/skos/core#"><skos:Concept rdf:about="urn:d:soot"><skos:notation>soot</skos:notation><skos:prefLabel xml:lang="en">Soot</skos:prefLabel></skos:Concept></rdf:RDF>';
 
 /** The camera of a photograph of the wall, in a format of RealityCapture. */
-const poses_of = (name) =>
-  `#name,x,y,alt,heading,pitch,roll,f\n${name},50,50,300,0,0,0,35\n`;
+const poses_of = (name) => `#name,x,y,alt,heading,pitch,roll,f\n${name},50,50,300,0,0,0,35\n`;
 
 const kColumns = [
   { name: "Code", required: true, unique: true },
