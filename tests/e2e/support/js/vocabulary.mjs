@@ -619,6 +619,23 @@ export const particulars = {
       expression: one("moisture * 2", "cracks + 1", "nothing + 1"),
     },
   }),
+  preview_layer: {
+    path: { model: one("wall") },
+    // some kinds of computations take half a minute
+    ...json({
+      by_schema: {
+        LayerCreate: fc.oneof(
+          fc.record({
+            name: fc.uuid(),
+            resolution: one(2048),
+            expression: one("moisture * 2", "distance(cracks, 0.1)", "nothing + 1"),
+          }),
+          fc.record({ name: fc.uuid(), compute: fc.record({ kind: one("height", "slope") }) }),
+          fc.record({ name: fc.uuid() }),
+        ),
+      },
+    }),
+  },
   run_analysis: json({
     by_schema: {
       AnalysisStep: fc.oneof(
