@@ -52,9 +52,9 @@ void add_numbers(PgArray& numbers, const photo::Calibration& calibration) {
 photo::Pose read_pose(PgRow& row) {
   const std::vector<double> numbers = row.reals();
   photo::Pose pose;
+  auto next = numbers.begin();
   for (glm::length_t y = 0; y < 3; ++y)
-    for (glm::length_t x = 0; x < 3; ++x)
-      pose.camera_from_world[x][y] = numbers[static_cast<std::size_t>(3 * y + x)];
+    for (glm::length_t x = 0; x < 3; ++x) pose.camera_from_world[x][y] = *next++;
   pose.center = {numbers[9], numbers[10], numbers[11]};
   return pose;
 }

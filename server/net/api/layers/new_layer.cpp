@@ -117,7 +117,10 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
       STRATA_TRY(is_condition && !body.palette
                      ? Result<Palette>(palette_of_condition(body.name))
                      : palette_of(body.palette, layer.type, layer.kind == LayerKind::database));
-  layer.palette = source && !body.palette ? source->palette : std::move(palette);
+  if (source && !body.palette)
+    layer.palette = source->palette;
+  else
+    layer.palette = std::move(palette);
   layer.opacity = body.opacity;
   layer.blend = body.blend.value_or(LayerBlend::normal);
   // By default, a computed layer must not cover the layers that other users work with.
