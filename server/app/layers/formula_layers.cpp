@@ -5,6 +5,7 @@
 
 #include "app/edits.h"
 #include "app/layers/formula_limits.h"
+#include "app/layers/layer_views.h"
 #include "app/layers/prepared_formula.h"
 #include "domain/layers/layer.h"
 #include "domain/layers/tile_mirror.h"

@@ -7,6 +7,7 @@
 
 #include "app/layers/computed_layers.h"
 #include "app/layers/formula_layers.h"
+#include "app/layers/layer_views.h"
 #include "app/layers/prepared_formula.h"
 #include "domain/scene/model.h"
 #include "mesh/parallel.h"
@@ -14,7 +15,6 @@
 #include "mesh/texels/surface_map.h"
 #include "query/conditions/expression_evaluator.h"
 #include "query/sampling/values.h"
-#include "room/layers.h"
 #include "room/pipeline/expression_binding.h"
 #include "room/surface.h"
 
@@ -26,11 +26,7 @@ Result<TileMap> formula_content(const Services& services, room::Room& room, cons
                                 const mesh::SurfaceMap& map, const Author& author,
                                 Progress& progress) {
   auto formula = STRATA_TRY(prepare_formula(services, room, layer, author, progress));
-  std::vector<query::LayerView> views = views_of(room.layers().all());
-  const std::vector<std::string> read = layers_of(formula.expression);
-  for (query::LayerView& view : views)
-    if (std::ranges::find(read, view.layer.slug) != read.end())
-      view.snapshot = STRATA_TRY(room.queries().tiles(view.layer.slug, {}));
+  auto views = STRATA_TRY(views_read(room, layers_of(formula.expression)));
   std::ranges::move(formula.views, std::back_inserter(views));
   const auto bound = STRATA_TRY(room::bind_for_layer(formula.expression, views, services.store,
                                                      author.role, layer.visibility, "expression"));

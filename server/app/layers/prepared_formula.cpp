@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/layers/formula_layers.h"
+#include "app/layers/layer_views.h"
 #include "app/layers/surface_functions.h"
 #include "domain/scene/model.h"
 #include "jobs/shape_layer.h"
@@ -43,12 +44,6 @@ Result<query::LayerView> shape_view(store::Store& store, const room::Room& room,
 }
 
 }  // namespace
-
-std::vector<query::LayerView> views_of(const std::vector<Layer>& layers) {
-  std::vector<query::LayerView> views;
-  for (const Layer& layer : layers) views.push_back({layer, {}});
-  return views;
-}
 
 Result<PreparedFormula> prepare_formula(const Services& services, room::Room& room,
                                         const Layer& layer, const Author& author,

@@ -29,7 +29,4 @@ Result<PreparedFormula> prepare_formula(const Services& services, room::Room& ro
                                         const Layer& layer, const Author& author,
                                         Progress& progress);
 
-// Returns the layers without their content.
-std::vector<query::LayerView> views_of(const std::vector<Layer>& layers);
-
 }  // namespace strata::app

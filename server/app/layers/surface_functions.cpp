@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "app/layers/layer_views.h"
 #include "app/layers/reserved_regions.h"
 #include "domain/scene/model.h"
 #include "domain/scene/up.h"
@@ -23,9 +25,7 @@
 #include "query/regions/run_off.h"
 #include "query/regions/sieve.h"
 #include "query/regions/watershed.h"
-#include "room/layers.h"
 #include "room/pipeline/expression_binding.h"
-#include "room/queries.h"
 #include "room/rooms.h"
 #include "room/surface.h"
 
@@ -213,22 +213,6 @@ class SurfaceFunctionValues {
   const glm::dvec3 up_;
 };
 
-// Returns the layers of the model. Only those that the functions read have texels.
-Result<std::vector<query::LayerView>> views_read_by(room::Room& room,
-                                                    const query::SurfaceFormula& formula) {
-  std::vector<query::LayerView> views;
-  for (Layer& layer : room.layers().all()) {
-    const bool is_read = std::ranges::any_of(formula.functions, [&](const auto& each) {
-      const auto read = layers_of(each.function);
-      return std::ranges::find(read, layer.slug) != read.end();
-    });
-    TileMirror::Snapshot snapshot;
-    if (is_read) snapshot = STRATA_TRY(room.queries().tiles(layer.slug, {}));
-    views.push_back({std::move(layer), std::move(snapshot)});
-  }
-  return views;
-}
-
 }  // namespace
 
 Result<MemoryLedger::Share> reserve_surface_functions(const Services& services, room::Room& room,
@@ -256,7 +240,10 @@ Result<void> compute_surface_functions(const Services& services, room::Room& roo
   auto graph = STRATA_TRY(room.surface().graph(layer.resolution));
   const SurfaceFunctionValues values(services, room, layer, author, std::move(map),
                                      std::move(graph));
-  std::vector<query::LayerView> views = STRATA_TRY(views_read_by(room, formula));
+  std::vector<std::string> read;
+  for (const auto& function : formula.functions)
+    std::ranges::copy(layers_of(function.function), std::back_inserter(read));
+  std::vector<query::LayerView> views = STRATA_TRY(views_read(room, read));
   views.insert(views.end(), shapes.begin(), shapes.end());
   for (const auto& function : formula.functions) {
     const Stage stage{double(first) / double(steps), double(first + 1) / double(steps)};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/ext/matrix_clip_space.hpp>
 #include <limits>
 
 namespace strata::app {
@@ -81,17 +82,9 @@ Camera view_of(const Pinhole& pinhole, const photo::Pose& pose, const glm::dvec3
   // A camera that looks away from the model sees nothing, but must still have a projection.
   const double far = farthest > 0 ? farthest * kMargin : 1;
   const double near = std::max(std::min(nearest / kMargin, far / 2), far * kNearOfFar);
-  // The frustum of OpenGL. The window is in the plane z = 1, and its y points down.
-  glm::dmat4 projection(0);
-  const double width = pinhole.right - pinhole.left, height = pinhole.bottom - pinhole.top;
-  projection[0][0] = 2 / width;
-  projection[1][1] = 2 / height;
-  projection[2][0] = (pinhole.right + pinhole.left) / width;
-  projection[2][1] = -(pinhole.top + pinhole.bottom) / height;
-  projection[2][2] = -(far + near) / (far - near);
-  projection[2][3] = -1;
-  projection[3][2] = -2 * far * near / (far - near);
-  camera.projection = projection;
+  // The window is in the plane z = 1, and its y points down.
+  camera.projection = glm::frustum(near * pinhole.left, near * pinhole.right,
+                                   -near * pinhole.bottom, -near * pinhole.top, near, far);
   return camera;
 }
 

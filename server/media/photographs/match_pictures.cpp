@@ -47,7 +47,7 @@ using Places = std::unordered_map<std::string_view, std::vector<std::size_t>>;
 
 }  // namespace
 
-std::vector<std::optional<std::size_t>> match_pictures(std::span<const PosedPhotograph> photographs,
+std::vector<std::optional<std::size_t>> match_pictures(std::span<const std::string> photographs,
                                                        std::span<const std::string> pictures) {
   std::vector<std::string> paths;  // a view into these texts is the key of a place
   paths.reserve(pictures.size());
@@ -59,7 +59,7 @@ std::vector<std::optional<std::size_t>> match_pictures(std::span<const PosedPhot
   }
   std::vector<Match> of_photographs(photographs.size()), of_pictures(pictures.size());
   for (std::size_t i = 0; i < photographs.size(); ++i) {
-    const std::string path = to_lower(photographs[i].name);
+    const std::string path = to_lower(photographs[i]);
     const std::string_view name = last_part(path);
     auto found = by_name.find(name);
     const bool is_named = found != by_name.end();

@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "media/photographs/posed_photographs.h"
-
 namespace strata::photo {
 
-// Returns the index of the picture of each photograph, or nothing if it has none. `pictures` are
-// the users' names of image files, with or without folders.
+// Returns the index of the picture of each photograph, or nothing if it has none. `photographs` are
+// their names in the export (PosedPhotograph::name), and `pictures` are the users' names of image
+// files, with or without folders.
 //
 // The last parts of the names must be equal, without regard to upper and lower case. If no picture
 // has the name of the photograph, names without their extensions are compared: Metashape leaves
@@ -18,7 +17,7 @@ namespace strata::photo {
 // the longest common end of folders is used. A photograph has no picture if several are equally
 // close. A picture of several photographs belongs to the closest one, and to none if several are
 // equally close. Takes little more time than sorting the names.
-std::vector<std::optional<std::size_t>> match_pictures(std::span<const PosedPhotograph> photographs,
+std::vector<std::optional<std::size_t>> match_pictures(std::span<const std::string> photographs,
                                                        std::span<const std::string> pictures);
 
 }  // namespace strata::photo

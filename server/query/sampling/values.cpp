@@ -126,21 +126,44 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
   return surface_point(*hit, origin, layers);
 }
 
+namespace {
+
+// Calls visit(cell, pixel, point) for the surface point at the center of each cell of a grid over
+// the window of the camera, on several threads. Cells are numbered row by row from the top left,
+// and those without a surface are left out.
+template <class Visit>
+void for_each_seen(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera,
+                   int columns, int rows, const std::vector<LayerView>& layers,
+                   const Visit& visit) {
+  mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
+    const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns);
+    for (int column = 0; column < columns; ++column) {
+      const glm::dvec2 pixel{(column + 0.5) * camera.width / columns,
+                             (row + 0.5) * camera.height / rows};
+      const auto point = pick(tree, origin, camera, pixel.x, pixel.y, layers);
+      if (point.hit) visit(first + static_cast<std::size_t>(column), pixel, point);
+    }
+  });
+}
+
+std::size_t cells_of(int columns, int rows) {
+  return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+}
+void spend_cells(std::size_t cells) {
+  if (Question* question = Question::current()) question->spend(cells);
+}
+
+}  // namespace
+
 std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree,
                                                     const glm::dvec3& origin, const Camera& camera,
                                                     int columns, int rows, const LayerView& layer) {
-  std::vector<std::optional<std::uint32_t>> keys(static_cast<std::size_t>(columns) *
-                                                 static_cast<std::size_t>(rows));
-  const std::vector<LayerView> layers{layer};
-  mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
-    for (int column = 0; column < columns; ++column) {
-      const auto point = pick(tree, origin, camera, (column + 0.5) * camera.width / columns,
-                              (row + 0.5) * camera.height / rows, layers);
-      if (point.hit && point.values[0].valid)
-        keys[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-             static_cast<std::size_t>(column)] = static_cast<std::uint32_t>(point.values[0].value);
-    }
-  });
+  std::vector<std::optional<std::uint32_t>> keys(cells_of(columns, rows));
+  for_each_seen(tree, origin, camera, columns, rows, {layer},
+                [&](std::size_t cell, const glm::dvec2&, const SurfacePoint& point) {
+                  if (const LayerValue& value = point.values[0]; value.valid)
+                    keys[cell] = static_cast<std::uint32_t>(value.value);
+                });
   return keys;
 }
 
@@ -149,31 +172,24 @@ std::vector<std::uint8_t> picture_of_values(const mesh::SearchTree& tree, const 
                                             const LayerView& layer) {
   constexpr double kBare = 190;      // gray of surface without a value
   constexpr double kDarkest = 0.35;  // share of the light where the view is grazing
-  const auto width = static_cast<std::size_t>(columns);
-  const std::size_t cells = width * static_cast<std::size_t>(rows);
-  if (Question* question = Question::current()) question->spend(cells);
+  const std::size_t cells = cells_of(columns, rows);
+  spend_cells(cells);
   std::vector<std::uint8_t> rgba(cells * 4, 0);
-  const std::vector<LayerView> layers{layer};
-  mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
-    for (int column = 0; column < columns; ++column) {
-      const glm::dvec2 pixel{(column + 0.5) * camera.width / columns,
-                             (row + 0.5) * camera.height / rows};
-      const auto point = pick(tree, origin, camera, pixel.x, pixel.y, layers);
-      if (!point.hit) continue;
-      const glm::dvec3 ray = ray_through_pixel(camera, pixel.x, pixel.y).direction;
-      const double facing = std::abs(glm::dot(glm::dvec3(point.normal), ray));
-      const double light = kDarkest + (1 - kDarkest) * facing;
-      const Rgba color =
-          point.values[0].valid ? color_of(layer.layer.palette, point.values[0].value) : Rgba{};
-      const double covered = color[3] / 255.0;
-      const std::size_t cell =
-          (static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)) * 4;
-      for (std::size_t channel = 0; channel < 3; ++channel)
-        rgba[cell + channel] = static_cast<std::uint8_t>(
-            std::lround(light * std::lerp(kBare, static_cast<double>(color[channel]), covered)));
-      rgba[cell + 3] = 255;
-    }
-  });
+  for_each_seen(
+      tree, origin, camera, columns, rows, {layer},
+      [&](std::size_t cell, const glm::dvec2& pixel, const SurfacePoint& point) {
+        const glm::dvec3 ray = ray_through_pixel(camera, pixel.x, pixel.y).direction;
+        const double facing = std::abs(glm::dot(glm::dvec3(point.normal), ray));
+        const double light = kDarkest + (1 - kDarkest) * facing;
+        const LayerValue& value = point.values[0];
+        const Rgba color = value.valid ? color_of(layer.layer.palette, value.value) : Rgba{};
+        const double covered = color[3] / 255.0;
+        std::uint8_t* out = &rgba[cell * 4];
+        for (std::size_t channel = 0; channel < 3; ++channel)
+          out[channel] = static_cast<std::uint8_t>(
+              std::lround(light * std::lerp(kBare, static_cast<double>(color[channel]), covered)));
+        out[3] = 255;
+      });
   return rgba;
 }
 
@@ -181,22 +197,18 @@ std::vector<std::uint8_t> seen_selection(const mesh::SearchTree& tree, const glm
                                          const Camera& camera, int columns, int rows,
                                          const mesh::SurfaceMap& map,
                                          const std::vector<std::uint64_t>* selection) {
-  const auto width = static_cast<std::size_t>(columns);
-  const std::size_t cells = width * static_cast<std::size_t>(rows);
-  if (Question* question = Question::current()) question->spend(cells);
+  const std::size_t cells = cells_of(columns, rows);
+  spend_cells(cells);
   std::vector<std::uint8_t> seen(cells, 0);
-  mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
-    for (int column = 0; column < columns; ++column) {
-      const auto point = pick(tree, origin, camera, (column + 0.5) * camera.width / columns,
-                              (row + 0.5) * camera.height / rows, {});
-      if (!point.hit) continue;
-      const auto texel = mesh::surface_texel_at(map, point.uv);
-      if (!texel) continue;
-      // a word of TexelSelection has the 64 texels of a slot
-      if (selection == nullptr || ((*selection)[*texel / 64] >> (*texel % 64) & 1u) != 0)
-        seen[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)] = 1;
-    }
-  });
+  for_each_seen(
+      tree, origin, camera, columns, rows, {},
+      [&](std::size_t cell, const glm::dvec2&, const SurfacePoint& point) {
+        const auto texel = mesh::surface_texel_at(map, point.uv);
+        if (!texel) return;
+        // a word of TexelSelection has the 64 texels of a slot
+        if (selection == nullptr || ((*selection)[*texel / 64] >> (*texel % 64) & 1u) != 0)
+          seen[cell] = 1;
+      });
   return seen;
 }
 

@@ -253,6 +253,20 @@ Result<std::vector<Photograph>> Photographs::of_model(ModelId model_id) {
   });
 }
 
+Result<std::vector<std::pair<PhotographId, std::string>>> Photographs::names(ModelId model_id) {
+  using Names = std::vector<std::pair<PhotographId, std::string>>;
+  return pool_.read([&](PgConnection& connection) -> Result<Names> {
+    const auto rows = STRATA_TRY(
+        connection.query("SELECT id, name FROM photographs WHERE model_id = $1 ORDER BY name",
+                         Params().id(model_id)));
+    Names names;
+    names.reserve(static_cast<std::size_t>(rows.rows()));
+    for (int i = 0; i < rows.rows(); ++i)
+      names.emplace_back(rows.id<PhotographId>(i, 0), rows.text(i, 1));
+    return names;
+  });
+}
+
 Result<Photograph> Photographs::find(ModelId model_id, PhotographId id) {
   return pool_.read([&](PgConnection& connection) { return find_one(connection, model_id, id); });
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -71,6 +72,8 @@ class Photographs {
   Result<Page> page(ModelId model_id, int limit, int offset,
                     const std::optional<std::string>& after_name);
   Result<std::vector<Photograph>> of_model(ModelId model_id);  // sorted in the same way
+  // The ids and names alone, for the match of an image file with up to 20 000 names.
+  Result<std::vector<std::pair<PhotographId, std::string>>> names(ModelId model_id);
   Result<Photograph> find(ModelId model_id, PhotographId id);
 
   // Replaces the image, and deletes the content of the former one if nothing else uses it. Returns

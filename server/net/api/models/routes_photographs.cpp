@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
+#include <glm/trigonometric.hpp>
 #include <string>
 
 #include "app/photographs/photograph_cameras.h"
@@ -85,7 +85,7 @@ class Shown {
     shown.pixel = seeing.place.pixel;
     shown.undistorted_pixel = app::pixel_of(*pinhole, seeing.place.direction);
     shown.mm_per_pixel = seeing.place.units_per_pixel * model_.metres() * kMmPerMeter;
-    shown.angle = std::acos(std::min(seeing.place.cos_angle, 1.0)) * 180 / glm::pi<double>();
+    shown.angle = glm::degrees(std::acos(std::min(seeing.place.cos_angle, 1.0)));
     shown.distance_m = seeing.place.distance * model_.metres();
     shown.photograph = of(seeing.photograph);
     return shown;
@@ -256,14 +256,14 @@ Result<CheckedOriginal> checked_original(const RouteContext& context,
 // Returns the only photograph that has the name of the file.
 Result<store::PhotographId> photograph_named(const RouteContext& context, const Model& model,
                                              const std::string& filename) {
-  const auto all = STRATA_TRY(context.store.photographs().of_model(model.id));
-  std::vector<photo::PosedPhotograph> posed;
-  posed.reserve(all.size());
-  for (const auto& photograph : all) posed.push_back(photograph.posed);
-  const std::array names{filename};
-  const auto matches = photo::match_pictures(posed, names);
+  const auto all = STRATA_TRY(context.store.photographs().names(model.id));
+  std::vector<std::string> names;
+  names.reserve(all.size());
+  for (const auto& [id, name] : all) names.push_back(name);
+  const std::array pictures{filename};
+  const auto matches = photo::match_pictures(names, pictures);
   for (std::size_t i = 0; i < matches.size(); ++i)
-    if (matches[i]) return all[i].id;
+    if (matches[i]) return all[i].first;
   return fail(ErrorCode::invalid, "No such photograph",
               "Not exactly one photograph of the model has the name of this file. Import its "
               "camera pose first, or add the file to a photograph that you choose.",
