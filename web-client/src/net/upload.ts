@@ -9,6 +9,9 @@ export interface UploadFile {
   path: string;
 }
 
+export const asUploads = (files: readonly File[]): UploadFile[] =>
+  files.map((file) => ({ file, path: file.name }));
+
 export interface Upload<T> {
   /** Resolves with the response. */
   done: Promise<T>;

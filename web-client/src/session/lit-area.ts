@@ -7,8 +7,7 @@ import type { SelectRequest, SelectResponse } from "../core/protocol.gen";
 import type { OrbitCamera } from "../math/camera";
 import { cancelled, ApiError } from "../net/api-error";
 import type { Api } from "../net/api";
-
-const kMostPixels = 640; // longer side of the image, which only marks an area
+import { pictureOfView } from "./view-picture";
 
 /** The highlighted area. */
 export type LitRequest = Pick<SelectRequest, "where" | "within" | "layers" | "include" | "changed">;
@@ -90,24 +89,18 @@ export class LitArea {
   private async measure(request: LitRequest): Promise<SelectResponse> {
     this._running?.abort();
     const running = (this._running = new AbortController());
-    const camera = this._host.camera();
-    const scale = Math.min(1, kMostPixels / Math.max(camera.width, camera.height));
-    const seenBy = camera.message();
+    const picture = pictureOfView(this._host.camera());
     const answer = await this._api.json("POST /models/{model}/select", {
       path: { model: this._modelId },
       body: {
         ...request,
-        picture: {
-          camera: seenBy,
-          width: Math.max(1, Math.round(camera.width * scale)),
-          height: Math.max(1, Math.round(camera.height * scale)),
-        },
+        picture,
       },
       signal: running.signal,
     });
     if (running.signal.aborted) throw cancelled();
     this._running = null;
-    const fits = JSON.stringify(seenBy) === JSON.stringify(this._host.camera().message());
+    const fits = JSON.stringify(picture.camera) === JSON.stringify(this._host.camera().message());
     this.put(fits && answer.picture ? `data:image/png;base64,${answer.picture}` : null);
     return answer;
   }

@@ -9,11 +9,11 @@ import { completePalette, type LayerCreate } from "../../core/types";
 import { formatNumber } from "../../domain/measure";
 import { ApiError } from "../../net/api-error";
 import type { ModelSession } from "../../session/model-session";
+import { pictureOfView } from "../../session/view-picture";
 import { texts } from "../../texts";
 import { sharedStyles } from "../../ui/styles";
 import { legendStyles, paletteLegend } from "./legend";
 
-const kMostPixels = 640; // longer side of the picture
 const words = texts.layer_preview;
 
 @customElement("strata-layer-preview")
@@ -61,19 +61,10 @@ export class StrataLayerPreview extends LitElement {
     const running = (this._running = new AbortController());
     this._wanted = layer.resolution ?? this.session.model?.default_resolution ?? 0;
     void this.updateComplete.then(() => this.scrollIntoView({ block: "nearest" }));
-    const { camera } = this.session.view;
-    const scale = Math.min(1, kMostPixels / Math.max(camera.width, camera.height));
     try {
       const made = await this.session.api.json("POST /models/{model}/layer-preview", {
         path: { model: this.session.modelId },
-        body: {
-          layer,
-          picture: {
-            camera: camera.message(),
-            width: Math.max(1, Math.round(camera.width * scale)),
-            height: Math.max(1, Math.round(camera.height * scale)),
-          },
-        },
+        body: { layer, picture: pictureOfView(this.session.view.camera) },
         signal: running.signal,
       });
       if (running.signal.aborted) return;

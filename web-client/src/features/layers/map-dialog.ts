@@ -2,6 +2,7 @@
 // rasters, orthophotos, scanned maps.
 
 import type { Query } from "../../net/calls";
+import { asUploads } from "../../net/upload";
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { labelOf } from "../../domain/cells";
@@ -24,7 +25,6 @@ import {
 } from "./map-crs";
 import {
   accepted,
-  asUploads,
   colorKeys,
   colorRows,
   fileKind,

@@ -1,6 +1,5 @@
 // Files that can be painted into a layer: their kinds, and the parameters of the request.
 
-import type { UploadFile } from "../../net/upload";
 import { readNumber, typedNumber } from "../../core/locale";
 import type { MapColor, MapContents } from "../../core/types";
 
@@ -66,9 +65,6 @@ export function tableKind(text: string): "readings" | "vertices" {
     .map((name) => name.replace(/["\s]/g, "").toLowerCase());
   return ["x", "y", "z", "value"].every((name) => names.includes(name)) ? "readings" : "vertices";
 }
-
-export const asUploads = (files: readonly File[]): UploadFile[] =>
-  files.map((file) => ({ file, path: file.name }));
 
 /** Returns the six numbers of a world file, separated by commas, or null for other texts. */
 export function worldNumbers(text: string): string | null {

@@ -8,7 +8,6 @@ import "../../ui/dialog";
 import "../../ui/file-choice";
 import {
   accepted,
-  asUploads,
   fileKind,
   kPictureEndings,
   unknownFile,
@@ -26,6 +25,7 @@ import {
 } from "./map-crs";
 import { directionField, foundLine, progressLine, worldField } from "./map-place";
 import type { ModelSession } from "../../session/model-session";
+import { asUploads } from "../../net/upload";
 import { notices } from "../../ui/notices";
 import { Sending } from "../../ui/sending";
 import { filesStyles, formStyles, sharedStyles } from "../../ui/styles";

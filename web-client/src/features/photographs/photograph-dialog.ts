@@ -144,7 +144,7 @@ export class StrataPhotographDialog extends LitElement {
     </strata-dialog>`;
   }
 
-  /** The link to the unchanged file, for users who may download the files of the model. */
+  /** Links to the unchanged file if the user may download the files of the model. */
   private original(): TemplateResult | typeof nothing {
     const { api, modelId, model, role } = this.session;
     if (!model || !mayDownload(role, model)) return nothing;

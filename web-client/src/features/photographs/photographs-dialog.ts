@@ -6,7 +6,7 @@ import { customElement, property, state } from "lit/decorators.js";
 import { formatCount } from "../../core/locale";
 import type { Photograph, PosesReport, SeeingPhotograph } from "../../core/protocol.gen";
 import { formatNumber } from "../../domain/measure";
-import { ApiError } from "../../net/api-error";
+import { asUploads } from "../../net/upload";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import { texts } from "../../texts";
@@ -14,6 +14,7 @@ import { ask } from "../../ui/dialog";
 import "../../ui/file-choice";
 import { icon } from "../../ui/icons";
 import { notices } from "../../ui/notices";
+import { Sending } from "../../ui/sending";
 import { formStyles, sharedStyles } from "../../ui/styles";
 import { PictureImport } from "./picture-import";
 import { photographsOf } from "./photographs-of";
@@ -31,8 +32,7 @@ const shortName = (name: string): string => name.slice(name.search(/[^/\\]*$/));
 export class StrataPhotographsDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private _report: PosesReport | null = null;
-  @state() private _isImporting = false;
-  @state() private _problem = "";
+  private readonly _poses = new Sending(this);
   private _pictures!: PictureImport;
   private _imports = false; // whether the fields for the import are open
 
@@ -165,7 +165,7 @@ export class StrataPhotographsDialog extends LitElement {
 
   private import(): TemplateResult {
     const pictures = this._pictures;
-    const busy = this._isImporting || pictures.isRunning;
+    const busy = this._poses.busy || pictures.isRunning;
     const counts = photographsOf(this.session).counts;
     this._imports ||= counts?.total === 0; // stays open after the first import
     return html`<details
@@ -183,8 +183,8 @@ export class StrataPhotographsDialog extends LitElement {
         @files=${(event: CustomEvent<File[]>) => void this.importPoses(event.detail)}
       ></strata-file-choice>
       </div>
-      ${this._isImporting ? html`<p role="status">${words.reading_poses}</p>` : nothing}
-      ${this._problem ? html`<p class="error" role="alert">${this._problem}</p>` : nothing}
+      ${this._poses.busy ? html`<p role="status">${words.reading_poses}</p>` : nothing}
+      ${this._poses.problem ? html`<p class="error" role="alert">${this._poses.problem}</p>` : nothing}
       ${this._report ? this.report(this._report) : nothing}
       <div class="field"><span>${words.pictures}</span>
       <strata-file-choice
@@ -228,23 +228,17 @@ export class StrataPhotographsDialog extends LitElement {
 
   private async importPoses(files: File[]): Promise<void> {
     const { api, modelId } = this.session;
-    this._isImporting = true;
-    this._problem = "";
+    const [first] = files;
     this._report = null;
-    try {
-      const [first] = files;
-      this._report = await api.upload(
+    this._report = await this._poses.run((progress) =>
+      api.upload(
         "POST /models/{model}/photograph-poses",
         { path: { model: modelId }, query: files.length === 1 ? { filename: first!.name } : {} },
-        files.map((file) => ({ file, path: file.webkitRelativePath || file.name })),
-        () => {},
-      ).done;
-      photographsOf(this.session).readAgain();
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      this._problem = error.message;
-    }
-    this._isImporting = false;
+        asUploads(files),
+        progress,
+      ),
+    );
+    if (this._report) photographsOf(this.session).readAgain();
   }
 
   private async addPictures(files: File[]): Promise<void> {
