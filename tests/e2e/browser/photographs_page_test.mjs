@@ -3,10 +3,9 @@
 // next to it. The user paints on it, and the paint is where the photograph shows it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser } from "../support/js/browser.mjs";
-import { attach_log, test } from "../support/js/cases.mjs";
+import { attach_log, ends_well, test } from "../support/js/cases.mjs";
 import { open_tab } from "../support/js/panel.mjs";
-import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
+import { wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
 
 const words = texts_of("en");
@@ -77,11 +76,8 @@ const as_file = (name, text, mimeType = "text/plain") => ({
 
 let browser, page, server, front, middle;
 
-test.beforeAll(async () => {
-  browser = await Browser.open();
-  ({ page } = browser);
-  server = new StrataServer({ demo: true });
-  await server.start();
+test.beforeAll(async ({ server: started, desk }) => {
+  [browser, page, server] = [desk, desk.page, started];
   const palette = { mode: "categorical", points: [{ at: 1, color: "#ff00ffff", label: "Test" }] };
   await server.json("POST", `${base}/layers`, {
     name: "Test",
@@ -218,14 +214,6 @@ test("closing it leads back to the list of the same place, and all can be delete
   assert.equal((await server.json("GET", `${base}/photographs`)).total, 0);
 });
 
-test("the page has nothing to complain of, and the server ends with a clean log", async () => {
-  browser.assert_no_complaints(["422"]); // the image without a photograph
-  assert.equal(await server.signal("SIGTERM"), 0);
-  server.assert_clean_log();
-});
+ends_well({ complaints: ["422"] }); // the image without a photograph
 
 test.afterEach(({}, info) => attach_log(info, server));
-test.afterAll(async () => {
-  await browser?.close();
-  await server?.remove();
-});

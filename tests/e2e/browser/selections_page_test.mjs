@@ -59,6 +59,19 @@ async function change_border(mm, way) {
   await controls.getByRole("button", { name: way, exact: true }).click();
   return controls;
 }
+/** Checks that nearly all paint is on one sherd, and undoes it. */
+async function undo_on_one_sherd() {
+  await browser.saved();
+  const { layers, area_m2 } = await server.json("POST", `${base}/select`, {
+    within: { where: "valid(test)" },
+    layers: ["pieces"],
+  });
+  const most = Math.max(...layers.pieces.keys.map((each) => each.area_m2));
+  assert.ok(most > 0.9 * area_m2, `only ${most} of ${area_m2} m² are on one sherd`);
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  assert.equal(await painted_m2(), 0);
+}
 async function choose_layer() {
   await browser.drawn();
   await button(words.layers.select("Test")).click();
@@ -302,17 +315,7 @@ test("strokes inside and outside find a sherd, are undone, accepted and painted"
   assert.equal(await painted_m2(), 0, "strokes painted by themselves");
   await page.keyboard.press("Enter");
   await next("none").waitFor();
-  await browser.saved();
-  const within = { where: "valid(test)" };
-  const { layers, area_m2 } = await server.json("POST", `${base}/select`, {
-    within,
-    layers: ["pieces"],
-  });
-  const most = Math.max(...layers.pieces.keys.map((each) => each.area_m2));
-  assert.ok(most > 0.9 * area_m2, `only ${most} of ${area_m2} m² are on one sherd`);
-  await page.keyboard.press("Control+z");
-  await browser.saved();
-  assert.equal(await painted_m2(), 0);
+  await undo_on_one_sherd();
   await page.keyboard.press("l");
 });
 
@@ -361,16 +364,7 @@ test("the brush of the wand selects a sherd across its rim, and Alt takes surfac
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("Enter");
   await selection().waitFor({ state: "detached" });
-  await browser.saved();
-  const { layers, area_m2 } = await server.json("POST", `${base}/select`, {
-    within: { where: "valid(test)" },
-    layers: ["pieces"],
-  });
-  const most = Math.max(...layers.pieces.keys.map((each) => each.area_m2));
-  assert.ok(most > 0.9 * area_m2, `only ${most} of ${area_m2} m² are on one sherd`);
-  await page.keyboard.press("Control+z");
-  await browser.saved();
-  assert.equal(await painted_m2(), 0);
+  await undo_on_one_sherd();
   await radio(words.wand.clicks).click();
   await page.keyboard.press("l");
 });
