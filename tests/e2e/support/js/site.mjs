@@ -212,7 +212,7 @@ export class Site {
     });
     await server.json("POST", `/comments/${id}/replies`, { text: "Since 2019." });
     await this.#view("West");
-    await this.#tour("Round");
+    await this.#tour("Round", [{ table: "units", keys: [1], columns: [{ column: "code" }] }]);
     await this.#snapshot("First");
     await this.#selection("Sunny");
     await this.#post("/models/wall/tours/round/files?name=north.png", "picture.png");
@@ -283,15 +283,8 @@ export class Site {
     return this.server.json("POST", "/models/wall/selections", { name, ...definition });
   }
 
-  #tour(name) {
-    const stops = [
-      {
-        view: "west",
-        title: { en: "The west" },
-        layers: ["cracks"],
-        records: [{ table: "units", keys: [1], columns: [{ column: "code" }] }],
-      },
-    ];
+  #tour(name, records = []) {
+    const stops = [{ view: "west", title: { en: "The west" }, layers: ["cracks"], records }];
     return this.server.json("POST", "/models/wall/tours", { name, languages: ["en", "es"], stops });
   }
 
@@ -338,7 +331,10 @@ export class Site {
     }
   }
 
-  /** Makes another object of a kind, and returns its name in paths. */
+  /**
+   * Makes another object of a kind, and returns its name in paths. It must not need anything that a
+   * request may have deleted, for example record 1.
+   */
   async spare(kind) {
     const { server } = this;
     const name = `Spare ${++this.#made}`;
