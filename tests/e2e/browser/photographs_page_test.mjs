@@ -1,6 +1,7 @@
 // Photographs with camera poses on the page: poses and an image are imported, the photographs of a
 // place are listed after a click on the model, and a photograph is shown with the model over it and
-// next to it. The user paints on it, and the paint is where the photograph shows it.
+// next to it. The user paints on it and draws a line and a point, which are where the photograph shows
+// them.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { attach_log, ends_well, test } from "../support/js/cases.mjs";
@@ -78,6 +79,22 @@ let browser, page, server, front, middle;
 
 test.beforeAll(async ({ server: started, desk }) => {
   [browser, page, server] = [desk, desk.page, started];
+  const { project } = await server.json("GET", base);
+  await server.json("POST", `/projects/${project}/tables`, {
+    name: "Samples",
+    columns: [
+      { name: "Cracks", kind: "line" },
+      { name: "Places", kind: "point" },
+    ],
+  });
+  await server.json("POST", "/tables/samples/records", { values: {} });
+  await server.json("POST", `${base}/layers`, {
+    name: "Samples",
+    kind: "database",
+    table: "samples",
+    type: "u16",
+    resolution: 2048,
+  });
   const palette = { mode: "categorical", points: [{ at: 1, color: "#ff00ffff", label: "Test" }] };
   await server.json("POST", `${base}/layers`, {
     name: "Test",
@@ -198,6 +215,53 @@ test("a photograph is shown with the model, and paint goes where it shows it", a
     assert.equal(await painted(across, down), is, `${across} ${down}`);
   await dialog().getByRole("button", { name: words.model.undo, exact: true }).click();
   await wait_for(async () => (await statistics()).texels === 0, "the undone paint");
+});
+
+test("a line and a point belong to the record, where the photograph shows them", async () => {
+  await dialog().locator('select[name="layer"]').selectOption("Samples");
+  const photograph = dialog().locator("strata-picture-canvas img").first();
+  const click = async ([across, down]) => {
+    const { x, y, width, height } = await photograph.boundingBox();
+    await page.mouse.click(x + across * width, y + down * height);
+  };
+  const tool = (name) => dialog().getByRole("radio", { name, exact: true }).click();
+  const marks = async (column) =>
+    (await server.json("GET", "/tables/samples/records/1")).values[column] ?? [];
+  const seen_at = (place) => {
+    const { view, projection } = camera_of(front, middle);
+    const times = (matrix, vector) =>
+      [0, 1, 2, 3].map((row) =>
+        dot(
+          [0, 1, 2, 3].map((k) => matrix[4 * k + row]),
+          vector,
+        ),
+      );
+    const [cx, cy, , w] = times(projection, times(view, [...place, 1]));
+    return [(cx / w + 1) / 2, (1 - cy / w) / 2];
+  };
+  const is_near = (place, wanted) => {
+    const seen = seen_at(place);
+    assert.ok(Math.hypot(...minus(seen, wanted)) < 0.01, `${seen}, not ${wanted}`);
+  };
+  await tool(words.tools.line);
+  for (const place of [
+    [0.45, 0.5],
+    [0.55, 0.6],
+    [0.55, 0.6],
+  ])
+    await click(place);
+  await wait_for(async () => (await marks("cracks")).length === 1, "the line");
+  const [{ coordinates: line }] = await marks("cracks");
+  is_near(line[0], [0.45, 0.5]);
+  is_near(line.at(-1), [0.55, 0.6]);
+  await shot("line");
+  await tool(words.tools.point);
+  await click([0.5, 0.45]);
+  await wait_for(async () => (await marks("places")).length === 1, "the point");
+  is_near((await marks("places"))[0].coordinates[0], [0.5, 0.45]);
+  await dialog().getByRole("button", { name: words.model.undo, exact: true }).click();
+  await wait_for(async () => (await marks("places")).length === 0, "the undone point");
+  assert.equal((await marks("cracks")).length, 1);
 });
 
 test("closing it leads back to the list of the same place, and all can be deleted", async () => {

@@ -22,6 +22,21 @@ export interface CameraMessage {
   section?: Plane[];
 }
 
+/**
+ * Returns a function for a camera. It returns the world length of a window pixel at a point in front
+ * of the eye.
+ */
+export function pixelSizeThrough({
+  view,
+  projection,
+  height,
+}: CameraMessage): (place: Vec3) => number {
+  const unit = 2 / (projection[5]! * height); // at depth 1, or at any depth without perspective
+  const perspective = projection[11] !== 0;
+  return (place) =>
+    perspective ? -unit * transform(view, [place[0], place[1], place[2], 1])[2] : unit;
+}
+
 const kFieldOfView = (35 * Math.PI) / 180; // vertical field of view
 export const kHalfFieldTangent = Math.tan(kFieldOfView / 2);
 const kMinZoom = 1e-4; // smallest and largest distance, relative to the model's radius
@@ -195,9 +210,7 @@ export class OrbitCamera {
    * point.
    */
   pixelSize(): (place: Vec3) => number {
-    const [eye, { back }, unit] = [this.eye(), this.axes(), this.unitPerPixel(1)];
-    const { perspective } = this;
-    return (place) => (perspective ? unit * dot(subtract(eye, place), back) : unit);
+    return pixelSizeThrough(this.message());
   }
 
   /** Restores the default field of view. Objects at the target's distance keep their size. */

@@ -110,7 +110,7 @@ export function makeTools(session: ModelSession, host: ToolHost): ToolManager {
     outlineEnded: outlineHost.outlineEnded,
     edges: outlineHost.edges,
     beginOutline: () => session.marks.beginLine(),
-    finishOutline: (path: Point[]) => session.marks.finishLine(path),
+    finishOutline: (path: Point[]) => void session.marks.finishLine(path),
     outlineChanged: () => {
       session.marks.lineChanged(session.tools.outline);
       host.outline();
@@ -148,7 +148,7 @@ export function makeTools(session: ModelSession, host: ToolHost): ToolManager {
     }),
     pick: new PickTool((sample) => session.pointer.take(sample)),
     line: new LineTool(lineHost),
-    point: new PointTool((sample) => session.marks.setPoint(sample)),
+    point: new PointTool((sample) => void session.marks.setPoint(sample)),
     measure: new MeasureTool(measureHost),
     face: new FaceTool(faceHost),
     part: new PartTool(partHost),

@@ -607,7 +607,7 @@ export class OpenModelSession implements ModelSession {
       return;
     }
     strokes?.forgetUndone();
-    if (kMarkingTools.includes(this.tools.active)) this.marks.undo();
+    if (kMarkingTools.includes(this.tools.active)) void this.marks.undo();
     else this.painting.undo();
   }
   redo(): void {
@@ -617,7 +617,7 @@ export class OpenModelSession implements ModelSession {
       strokes.redo();
       return;
     }
-    if (kMarkingTools.includes(this.tools.active)) this.marks.redo();
+    if (kMarkingTools.includes(this.tools.active)) void this.marks.redo();
     else this.painting.redo();
   }
 

@@ -6,6 +6,7 @@ import type { LaterTexts } from "./shape";
 
 export const laterTexts = {
   picture_tools: {
+    layer: "Ebene",
     move: "Verschieben",
     area: "Fläche",
     zoom: "Zoom",
@@ -14,6 +15,12 @@ export const laterTexts = {
     area_hint:
       "Klicken Sie die Ecken an, oder zeichnen Sie einen Umriss. Ein Klick auf die erste Ecke oder die Eingabetaste schließt die Fläche. Die Rücktaste entfernt die letzte Ecke, Escape bricht ab.",
     brush_hint: "Ziehen Sie über das Bild.",
+    draws: (record: string, column: string) =>
+      `Zeichnet für „${record}“, in die Spalte „${column}“.`,
+    how: {
+      line: "Entlang der Linie ziehen, oder Punkte anklicken und den letzten noch einmal anklicken oder die Eingabetaste drücken. Die Rücktaste entfernt den letzten Punkt, Escape bricht ab.",
+      point: "Die Stelle des Punktes anklicken.",
+    },
   },
 
   rollouts: {

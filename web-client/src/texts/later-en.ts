@@ -5,6 +5,7 @@ import { count, plural } from "./count";
 
 export const laterTexts = {
   picture_tools: {
+    layer: "Layer",
     move: "Move",
     area: "Area",
     zoom: "Zoom",
@@ -13,6 +14,11 @@ export const laterTexts = {
     area_hint:
       "Click the corners, or draw an outline. Click the first corner or press Enter to close the area. Backspace removes the last corner, Escape cancels.",
     brush_hint: "Drag on the picture.",
+    draws: (record: string, column: string) => `Draws for “${record}”, in the column “${column}”.`,
+    how: {
+      line: "Drag along the line, or click points and click the last one again or press Enter. Backspace removes the last point, Escape cancels.",
+      point: "Click the position of the point.",
+    },
   },
 
   rollouts: {

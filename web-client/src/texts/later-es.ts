@@ -6,6 +6,7 @@ import type { LaterTexts } from "./shape";
 
 export const laterTexts = {
   picture_tools: {
+    layer: "Capa",
     move: "Desplazar",
     area: "Área",
     zoom: "Zoom",
@@ -14,6 +15,12 @@ export const laterTexts = {
     area_hint:
       "Haga clic en las esquinas o dibuje un contorno. Un clic en la primera esquina o la tecla Intro cierran el área. Retroceso quita la última esquina, Escape cancela.",
     brush_hint: "Arrastre sobre la imagen.",
+    draws: (record: string, column: string) =>
+      `Dibuja para «${record}», en la columna «${column}».`,
+    how: {
+      line: "Arrastre a lo largo de la línea, o haga clic en los puntos y otra vez en el último, o pulse Intro. Retroceso quita el último punto, Escape cancela.",
+      point: "Haga clic en la posición del punto.",
+    },
   },
 
   rollouts: {

@@ -119,6 +119,7 @@ describe("matrices", () => {
       const depth = camera.depthOf(point);
       const beside = add(point, scale(camera.axes().right, camera.unitPerPixel(depth)));
       expect(camera.project(beside)!.x - camera.project(point)!.x).toBeCloseTo(1, 5);
+      expect(camera.pixelSize()(point)).toBeCloseTo(camera.unitPerPixel(depth), 8);
     });
   }
 

@@ -12,7 +12,7 @@ import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import "../../session/picture/picture-canvas";
 import type { StrataPictureCanvas } from "../../session/picture/picture-canvas";
-import type { DrawnPart, PicturePart } from "../../session/picture/picture-drawing";
+import { isPaint, type DrawnPart, type PicturePart } from "../../session/picture/picture-drawing";
 import { PicturePainting } from "../../session/picture/picture-painting";
 import { PictureTools, pictureToolStyles } from "../../session/picture/picture-tools";
 import { texts } from "../../texts";
@@ -52,6 +52,7 @@ export class StrataRolloutDialog extends LitElement {
     session: () => this.session,
     painting: () => this._painting,
     unit: "mm",
+    marks: false,
     left: () => this._canvas?.discard(),
     zoomed: () => void this._painting.redraw(),
   });
@@ -154,8 +155,10 @@ export class StrataRolloutDialog extends LitElement {
 
   private paint(sheet: RolloutSheet, drawn: DrawnPart): void {
     const { api, modelId: model } = this.session;
+    const { part } = drawn;
+    if (!isPaint(part)) return; // its tools draw no lines or points
     this._painting.paint(drawn, async ({ layer, paint }) => {
-      const body = { within: withinSheet(sheet, drawn.part), into: { layer: layer.id, ...paint } };
+      const body = { within: withinSheet(sheet, part), into: { layer: layer.id, ...paint } };
       return (await api.json("POST /models/{model}/select", { path: { model }, body })).edit;
     });
   }

@@ -2,7 +2,7 @@
 // millimeters on the sheet.
 
 import type { RolloutSheet, Within } from "../../core/protocol.gen";
-import type { PicturePart } from "../../session/picture/picture-drawing";
+import type { PaintPart } from "../../session/picture/picture-drawing";
 
 /** Returns the upper left corner of the sheet. */
 export function sheetOrigin(sheet: RolloutSheet): [number, number] {
@@ -18,7 +18,7 @@ export const isSameSheet = (a: RolloutSheet, b: RolloutSheet): boolean =>
  * Returns the area of a part in the contract's format, on the sheet of a response. The fitted values
  * are fixed, so the sheet stays the same.
  */
-export function withinSheet(sheet: RolloutSheet, part: PicturePart): Within {
+export function withinSheet(sheet: RolloutSheet, part: PaintPart): Within {
   const { axis, shape, radius, side, from, to } = sheet;
   return {
     unrolled: {

@@ -1,5 +1,5 @@
 // <strata-photograph-dialog>: a photograph without the distortion of its lens, with the model as its
-// camera sees it: over the photograph or next to it. Annotators paint on the photograph.
+// camera sees it: over the photograph or next to it. Annotators paint and draw on the photograph.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -11,7 +11,7 @@ import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import "../../session/picture/picture-canvas";
 import type { StrataPictureCanvas } from "../../session/picture/picture-canvas";
-import type { DrawnPart, PicturePart } from "../../session/picture/picture-drawing";
+import { isPaint, type DrawnPart, type PicturePart } from "../../session/picture/picture-drawing";
 import { PicturePainting, type PictureTarget } from "../../session/picture/picture-painting";
 import { PictureTools, pictureToolStyles } from "../../session/picture/picture-tools";
 import { texts } from "../../texts";
@@ -20,7 +20,7 @@ import { icon } from "../../ui/icons";
 import { notices } from "../../ui/notices";
 import { radioGroup } from "../../ui/radio-group";
 import { formStyles, sharedStyles } from "../../ui/styles";
-import { editThrough, frameThrough, windowOf } from "./through";
+import { editThrough, frameThrough, toPixel, windowOf } from "./through";
 
 const words = texts.photograph;
 const kSamples = 4; // per pixel of the model's picture
@@ -45,13 +45,14 @@ export class StrataPhotographDialog extends LitElement {
     session: () => this.session,
     painting: () => this._painting,
     unit: "px",
+    marks: true,
     left: () => this._canvas?.discard(),
     zoomed: () => void this.readPicture(),
   });
 
   constructor() {
     super();
-    followSession(this, "painting", "layers", "tables");
+    followSession(this, "painting", "layers", "marks", "tables");
   }
 
   static override styles = [
@@ -169,13 +170,24 @@ export class StrataPhotographDialog extends LitElement {
   private paint(drawn: DrawnPart): void {
     const { camera } = this.photograph;
     if (!camera || this._width === 0) return;
+    const { api, marks, modelId: model } = this.session;
+    const { part } = drawn;
     const window = windowOf(camera, this._width);
-    this._painting.paint(drawn, ({ layer, paint }: PictureTarget): Promise<EditResult> =>
-      this.session.api.json("POST /models/{model}/layers/{layer}/edits", {
-        path: { model: this.session.modelId, layer: layer.id },
-        body: editThrough(window, drawn.part, paint),
-      }),
-    );
+    if (isPaint(part)) {
+      this._painting.paint(drawn, ({ layer, paint }: PictureTarget): Promise<EditResult> =>
+        api.json("POST /models/{model}/layers/{layer}/edits", {
+          path: { model, layer: layer.id },
+          body: editThrough(window, part, paint),
+        }),
+      );
+      return;
+    }
+    const sight = { camera: window, scale: this._canvas?.unitPerCssPixel() ?? 1 };
+    this._painting.mark(drawn, () => {
+      if ("line" in part) return marks.finishLine(part.line.map(toPixel), sight);
+      const [x, y] = toPixel(part.point);
+      return marks.setPoint({ x, y }, sight);
+    });
   }
 
   /** Reads the photograph in the size for the zoom. */

@@ -2,7 +2,7 @@
 // window with fewer pixels. Drawn points are pixels of the picture with y upward, from 0 downward.
 
 import type { Camera, Edit } from "../../core/protocol.gen";
-import type { PicturePart, PicturePoint } from "../../session/picture/picture-drawing";
+import type { PaintPart, PicturePoint } from "../../session/picture/picture-drawing";
 
 const kShownWidth = 1200; // of a picture without zoom
 const kFrameSide = 1600; // of the longer side of the model's picture
@@ -25,7 +25,7 @@ const heightFor = ({ width, height }: Camera, shown: number): number =>
 /** Returns the edit that paints or erases a drawn part in a window. */
 export function editThrough(
   window: Camera,
-  part: PicturePart,
+  part: PaintPart,
   paint: { value: number } | { erase: true },
 ): Edit {
   return "polygon" in part
@@ -39,4 +39,5 @@ export function editThrough(
       };
 }
 
-const toPixel = ([x, y]: PicturePoint): [number, number] => [x, -y];
+/** Returns a drawn point as a pixel of the window. */
+export const toPixel = ([x, y]: PicturePoint): [number, number] => [x, -y];

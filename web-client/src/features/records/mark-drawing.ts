@@ -4,7 +4,7 @@
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import { readRecord, changeRecord } from "../../net/records";
-import type { CameraMessage } from "../../math/camera";
+import { pixelSizeThrough, type CameraMessage } from "../../math/camera";
 import type { Point } from "../../net/stroke";
 import type { PointerSample } from "../../ui/input";
 import { markColumns, markLength, marksOf, type MarkKind } from "../../domain/marks";
@@ -34,6 +34,12 @@ export interface MarkDrawingHost {
   changed(): void;
 }
 
+/** How the user sees the surface: the camera, and the number of its pixels per screen pixel. */
+export interface Sight {
+  camera: CameraMessage;
+  scale: number;
+}
+
 /** The record and the column that receive the drawing. */
 interface Target {
   model: Model;
@@ -44,6 +50,11 @@ interface Target {
 
 const kMostTries = 5; // for simultaneous changes to the record by other users
 const words = texts.marks;
+
+const measuresOf = ({ camera, scale }: Sight): Measures => ({
+  pixelAt: pixelSizeThrough(camera),
+  scale,
+});
 
 const metresOf = (lines: readonly MarkPlace[][], { unit }: Model): number =>
   lines.reduce((sum, coordinates) => sum + markLength({ coordinates }), 0) * metresPer(unit);
@@ -61,7 +72,8 @@ export class MarkDrawing {
   ) {
     this._measure = new LineMeasure({
       lookAlong: async (path) => this.lookAlong(_host.model()!, _host.view.camera.message(), path),
-      metresAlong: (steps) => lengthSeen(steps, this.measures()) * metresPer(_host.model()!.unit),
+      metresAlong: (steps) =>
+        lengthSeen(steps, measuresOf(this.sight())) * metresPer(_host.model()!.unit),
       changed: () => _host.changed(),
     });
   }
@@ -100,13 +112,13 @@ export class MarkDrawing {
     this._measure.follow(outline);
   }
 
-  finishLine(path: Point[]): void {
+  /** The path is in the window of the camera. Resolves when the line is saved or refused. */
+  finishLine(path: readonly Point[], sight = this.sight()): Promise<void> {
     const target = this.target("line");
-    if (!target) return;
-    const seenBy = this._host.view.camera.message();
-    const measures = this.measures();
-    this.queue(async () => {
-      const steps = await this.lookAlong(target.model, seenBy, path);
+    if (!target) return Promise.resolve();
+    const measures = measuresOf(sight);
+    return this.queue(async () => {
+      const steps = await this.lookAlong(target.model, sight.camera, path);
       const lines = await lineOnSurface(steps, measures, (from, to, step) =>
         this.nearestAlong(target.model, from, to, step),
       );
@@ -120,26 +132,25 @@ export class MarkDrawing {
     });
   }
 
-  setPoint({ x, y }: PointerSample): void {
+  setPoint({ x, y }: Pick<PointerSample, "x" | "y">, { camera } = this.sight()): Promise<void> {
     const target = this.target("point");
-    if (!target) return;
-    const seenBy = this._host.view.camera.message();
-    this.queue(async () => {
+    if (!target) return Promise.resolve();
+    return this.queue(async () => {
       const { hit, position } = await this._api.json("POST /models/{model}/pick", {
         path: { model: `${target.model.id}` },
-        body: { camera: seenBy, x, y },
+        body: { camera, x, y },
       });
       await this.add(target, hit && position ? [[position]] : [], words.point_set);
     });
   }
 
-  undo(): void {
+  async undo(): Promise<void> {
     const { table } = this._host.layers.selected ?? {};
-    if (table !== undefined) void this._host.tables.undo(table);
+    if (table !== undefined) await this._host.tables.undo(table);
   }
-  redo(): void {
+  async redo(): Promise<void> {
     const { table } = this._host.layers.selected ?? {};
-    if (table !== undefined) void this._host.tables.redo(table);
+    if (table !== undefined) await this._host.tables.redo(table);
   }
 
   private target(kind: MarkKind): Target | null {
@@ -188,15 +199,17 @@ export class MarkDrawing {
     });
     return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
-  private measures(): Measures {
+  /** How the user sees the 3D view. */
+  private sight(): Sight {
     return {
-      pixelAt: this._host.view.camera.pixelSize(),
+      camera: this._host.view.camera.message(),
       scale: Math.max(1, globalThis.devicePixelRatio || 1),
     };
   }
 
-  private queue(work: () => Promise<void>): void {
+  private queue(work: () => Promise<void>): Promise<void> {
     this._work = this._work.then(work).catch((error: unknown) => notices.error(error));
+    return this._work;
   }
 
   private async add(
@@ -219,7 +232,7 @@ export class MarkDrawing {
     const { tables } = this._host;
     if (tables.view?.tableId === table) tables.view.rows.put(changed);
     notices.dismiss(this._notice);
-    const act = (): void => this.queue(() => this.takeBack(table, changed.version));
+    const act = (): void => void this.queue(() => this.takeBack(table, changed.version));
     const what = told(tables.label(table, key) ?? texts.tables.record(key));
     const link = { label: texts.model.undo, act };
     this._notice = cut

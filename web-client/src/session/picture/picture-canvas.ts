@@ -1,5 +1,5 @@
-// <strata-picture-canvas>: a picture on which the user draws with the brush or areas, such as an
-// unrolled sheet or a photograph. Its event `drawn` contains a finished part. Drawn parts stay visible
+// <strata-picture-canvas>: a picture on which the user draws with a PictureTool, such as an unrolled
+// sheet or a photograph. Its event `drawn` contains a finished part. Drawn parts stay visible
 // over the picture while they are in `waiting`.
 
 import { css, html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
@@ -149,12 +149,12 @@ export class StrataPictureCanvas extends LitElement {
     const points = pointsOf(path);
     // y points up in the drawing, and down in SVG.
     return html`<svg aria-hidden="true" preserveAspectRatio="none" viewBox="${left} ${-top} ${width} ${height}">
-      ${[...this.waiting, ...open].map(shapeOf)}
+      ${[...this.waiting, ...open].map((drawn) => shapeOf(drawn, snap))}
       ${
-        this._drawing.hasCorners
+        this._drawing.hasCorners || (this.tool === "point" && path.length > 0)
           ? svg`<polyline points=${points} fill="none" stroke="var(--mark-dark)" stroke-width=${snap * 0.3} />
             <polyline points=${points} fill="none" stroke="var(--mark-light)" stroke-width=${snap * 0.15} />
-            ${path.slice(0, 1).map(([x, y]) => svg`<circle cx=${x} cy=${-y} r=${snap * 0.5} fill="var(--mark-light)" stroke="var(--mark-dark)" stroke-width=${snap * 0.1} />`)}`
+            ${(this.tool === "line" ? path.slice(-1) : path.slice(0, 1)).map(([x, y]) => svg`<circle cx=${x} cy=${-y} r=${snap * 0.5} fill="var(--mark-light)" stroke="var(--mark-dark)" stroke-width=${snap * 0.1} />`)}`
           : nothing
       }
       ${
@@ -171,7 +171,8 @@ export class StrataPictureCanvas extends LitElement {
     return { left, top, width: columns * this.unitPerPixel, height: rows * this.unitPerPixel };
   }
 
-  private unitPerCssPixel(): number {
+  /** The width of a CSS pixel, in the unit of the drawing. */
+  unitPerCssPixel(): number {
     const shown = this._img?.getBoundingClientRect().width ?? 0;
     return shown > 0 ? this.box.width / shown : this.unitPerPixel;
   }
@@ -225,8 +226,12 @@ export class StrataPictureCanvas extends LitElement {
   }
 }
 
-function shapeOf({ part, color: own }: DrawnPart): TemplateResult {
+function shapeOf({ part, color: own }: DrawnPart, snap: number): TemplateResult {
   const color = own ?? "var(--mark-light)";
+  if ("line" in part)
+    return svg`<polyline points=${pointsOf(part.line)} fill="none" stroke=${color} stroke-width=${snap * 0.3} />`;
+  if ("point" in part)
+    return svg`<circle cx=${part.point[0]} cy=${-part.point[1]} r=${snap * 0.5} fill=${color} />`;
   if ("polygon" in part)
     return svg`<polygon points=${pointsOf(part.polygon)} fill=${color} fill-rule="evenodd" opacity="0.7" />`;
   const { path, radius } = part.stroke;

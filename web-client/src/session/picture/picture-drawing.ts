@@ -1,11 +1,20 @@
-// What a user draws on a picture: strokes of the brush, and areas. Points are in the unit of the
+// What a user draws on a picture: strokes of the brush, areas, lines and points. Points are in the unit of the
 // picture, such as millimeters on an unrolled sheet or pixels of a photograph: x to the right, y up.
 
+import type { MarkKind } from "../../domain/marks";
+
 export type PicturePoint = [number, number];
-export type PictureTool = "move" | "brush" | "area";
+/** Tools that paint a layer. */
+export type PaintTool = "brush" | "area";
+export type DrawingTool = PaintTool | MarkKind;
+export type PictureTool = "move" | DrawingTool;
 /** A finished stroke or area. */
-export type PicturePart =
+export type PaintPart =
   { polygon: PicturePoint[] } | { stroke: { path: PicturePoint[]; radius: number } };
+export type PicturePart = PaintPart | { line: PicturePoint[] } | { point: PicturePoint };
+
+export const isPaint = (part: PicturePart): part is PaintPart =>
+  "polygon" in part || "stroke" in part;
 
 /** A finished part, and the color in which it is drawn. The color is null for parts that erase. */
 export interface DrawnPart {
@@ -31,6 +40,8 @@ export interface PictureDrawingHost {
 }
 
 const kMostPoints = 4096; // of a stroke or an area, as in the contract
+const kMostLinePoints = 1000;
+const kLeastPoints: Record<DrawingTool, number> = { brush: 1, area: 3, line: 2, point: 1 };
 const kStep = 0.1; // the least distance between two points of a drag, as a share of snap()
 const kDigits = 4;
 
@@ -46,9 +57,10 @@ export class PictureDrawing {
 
   constructor(private readonly _host: PictureDrawingHost) {}
 
-  /** Whether an area is begun whose corners the user sets one by one. */
+  /** Whether an area or a line is begun whose corners the user sets one by one. */
   get hasCorners(): boolean {
-    return this.path.length > 0 && this._host.tool() === "area";
+    const tool = this._host.tool();
+    return this.path.length > 0 && (tool === "area" || tool === "line");
   }
 
   down(at: PicturePoint): void {
@@ -56,9 +68,12 @@ export class PictureDrawing {
     if (tool === "move") return;
     const point = toStored(at);
     const { path } = this;
-    if (tool === "area" && path.length > 2 && apart(path[0]!, point) <= this._host.snap())
-      return this.finish();
-    if (tool === "brush") this.path = [];
+    const isAt = (end: PicturePoint | undefined): boolean =>
+      end !== undefined && apart(end, point) <= this._host.snap();
+    // The last point of a line is never set twice.
+    if (tool === "line" && isAt(path[path.length - 1])) return this.finish();
+    if (tool === "area" && path.length >= kLeastPoints.area && isAt(path[0])) return this.finish();
+    if (tool === "brush" || tool === "point") this.path = [];
     this._isDown = true;
     this._from = this.path.length;
     this.add(point);
@@ -69,33 +84,46 @@ export class PictureDrawing {
     const step = kStep * this._host.snap();
     for (const at of points) {
       const point = toStored(at);
-      if (apart(this.path[this.path.length - 1]!, point) >= step) this.add(point);
+      if (this._host.tool() === "point") this.path = [point];
+      else if (apart(this.path[this.path.length - 1]!, point) >= step) this.add(point);
     }
   }
 
   up(): void {
     if (!this._isDown) return;
     this._isDown = false;
-    if (this._host.tool() === "brush") return this.finish();
+    const tool = this._host.tool();
+    if (tool === "brush" || tool === "point") return this.finish();
     const pressed = this.path[this._from]!;
     const isClick = this.path
       .slice(this._from)
       .every((point) => apart(pressed, point) <= this._host.snap());
     if (isClick) this.path = this.path.slice(0, this._from + 1);
-    // An outline that was drawn in one go closes itself.
-    else if (this._from === 0 && this.path.length > 2) return this.finish();
+    // An outline that was drawn in one go closes itself, and such a line ends.
+    else if (this._from === 0) this.finish();
     this._host.changed();
   }
 
-  /** Finishes the stroke, or closes the area if it has three corners. */
+  /** Finishes the stroke, the point, or the area or line if it has enough corners. */
   finish(): void {
     const { path } = this;
-    const isStroke = this._host.tool() === "brush";
-    if (path.length < (isStroke ? 1 : 3)) return;
+    const tool = this._host.tool();
+    if (tool === "move" || path.length < kLeastPoints[tool]) return;
     this.discard();
-    this._host.finished(
-      isStroke ? { stroke: { path, radius: this._host.radius() } } : { polygon: path },
-    );
+    this._host.finished(this.partOf(tool, path));
+  }
+
+  private partOf(tool: DrawingTool, path: PicturePoint[]): PicturePart {
+    switch (tool) {
+      case "brush":
+        return { stroke: { path, radius: this._host.radius() } };
+      case "area":
+        return { polygon: path };
+      case "line":
+        return { line: path };
+      case "point":
+        return { point: path[0]! };
+    }
   }
 
   /** Removes the last corner, unless the pointer is drawing. */
@@ -123,8 +151,9 @@ export class PictureDrawing {
   }
 
   private add(point: PicturePoint): void {
-    if (this.path.length === kMostPoints) {
-      if (this._host.tool() !== "brush") return;
+    const tool = this._host.tool();
+    if (this.path.length === (tool === "line" ? kMostLinePoints : kMostPoints)) {
+      if (tool !== "brush") return;
       // A longer stroke continues as another one.
       const last = this.path[kMostPoints - 1]!;
       this.finish();

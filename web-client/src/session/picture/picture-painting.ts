@@ -1,4 +1,5 @@
-// The edits of a user on a picture. Each part is one edit, sent in the order of drawing.
+// The edits of a user on a picture. Each part is one edit, sent in the order of drawing. Strokes and
+// areas are edits of a layer. Lines and points are edits of a record.
 
 import type { EditResult } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
@@ -43,11 +44,18 @@ export class PicturePainting {
   ): void {
     const target = this._host.target(this.erases);
     if (!target) return;
+    this.mark({ part, color }, async () => {
+      const edit = await send(target);
+      this._host.showChange(edit?.texels_changed, edit?.area_m2);
+    });
+  }
+
+  /** Sends a part that is not an edit of a layer. */
+  mark({ part, color }: DrawnPart, send: () => Promise<void>): void {
     this.waiting = [...this.waiting, { part, color }];
     this.add(async () => {
       try {
-        const edit = await send(target);
-        this._host.showChange(edit?.texels_changed, edit?.area_m2);
+        await send();
         this._made.add(part);
       } catch (error) {
         this.forget([part]);
@@ -88,7 +96,8 @@ export class PicturePainting {
     for (const part of parts) this._made.delete(part);
   }
 
-  private add(edit: () => Promise<void>): void {
+  /** Sends an edit after the earlier ones, and then draws the picture again. */
+  add(edit: () => Promise<void>): void {
     this._edits.push(edit);
     this._host.changed();
     if (!this._isSending) void this.send();

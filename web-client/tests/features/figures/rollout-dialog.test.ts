@@ -1,9 +1,12 @@
-import { describe, expect, it } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import type { TemplateResult } from "lit";
 import { StrataRolloutDialog } from "../../../src/features/figures/rollout-dialog";
 import { kNewRollout } from "../../../src/features/figures/rollout-request";
 import type { PicturePainting } from "../../../src/session/picture/picture-painting";
 import type { ModelSession } from "../../../src/session/model-session";
+
+// The field needs a browser when it is loaded.
+vi.mock("../../../src/session/fields/value-picker", () => ({}));
 
 /** Fires an event of the outermost element of a template. */
 function fire({ strings, values }: TemplateResult, event: string): void {

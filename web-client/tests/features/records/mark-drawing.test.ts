@@ -22,11 +22,19 @@ const table = {
     column(5, "samples", "point"),
   ],
 };
+/** Without perspective, a pixel is 1 unit long. */
+const flatView = {
+  view: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+  projection: [0.02, 0, 0, 0, 0, 0.02, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1],
+  width: 100,
+  height: 100,
+};
 const comes = (check: () => void): Promise<void> => vi.waitFor(check, { timeout: 20_000 });
 const isTold = (title: string): Promise<void> =>
   comes(() => expect(shown.at(-1)?.title).toBe(title));
 
 let stored: { key: number; version: number; values: Record<string, unknown> };
+let seenBy: unknown[]; // cameras of the requests
 let told: string[]; // requests that the server received
 let beforeChange: () => void;
 let newest: number; // the newest entry of the table's journal
@@ -41,14 +49,15 @@ const answer = (body: unknown, status = 200): Response =>
 
 beforeEach(() => {
   stored = { key: 7, version: 1, values: {} };
-  [told, undone, newest] = [[], [], 2];
+  [told, seenBy, undone, newest] = [[], [], [], 2];
   beforeChange = () => {};
   const api = new Api((path, init) => {
     const what = `${init!.method} ${String(path).replace("/api/v1", "")}`;
     told.push(what);
     const body = init!.body
-      ? (JSON.parse(String(init!.body)) as { version: number; values: object })
+      ? (JSON.parse(String(init!.body)) as { version: number; values: object; camera?: unknown })
       : null;
+    if (body?.camera) seenBy.push(body.camera);
     if (what.endsWith("/profile")) {
       const samples = [
         [0, 0, 0],
@@ -79,7 +88,7 @@ beforeEach(() => {
   });
   const layer = { id: 1, table: 3, name: "Damages" };
   host = {
-    view: { camera: { message: () => ({}), pixelSize: () => () => 1 } },
+    view: { camera: { message: () => flatView } },
     layers: { selected: layer },
     painting: { stroking: false, chosenLayer: () => layer, brush: { valueFor: () => 7 } },
     tables: {
@@ -104,7 +113,7 @@ describe("what is drawn on the surface", () => {
   it("is added to the record in the column that was chosen, as lines where the surface was seen", async () => {
     marks.chooseColumn(3, marks.columns("line")[1]!);
     expect(marks.beginLine()).toBe(true);
-    marks.finishLine([
+    void marks.finishLine([
       [0, 0],
       [31, 31],
     ]);
@@ -130,11 +139,24 @@ describe("what is drawn on the surface", () => {
     });
   });
 
+  it("is seen through the camera that drew it", async () => {
+    const camera = { ...flatView, width: 7 };
+    await marks.setPoint({ x: 1, y: 1 }, { camera, scale: 1 });
+    await marks.finishLine(
+      [
+        [0, 0],
+        [31, 31],
+      ],
+      { camera, scale: 1 },
+    );
+    expect(seenBy).toEqual([camera, camera]);
+  });
+
   it("stays with what others add to the record meanwhile, and with what was drawn just before", async () => {
     const other: Mark = { model: 2, coordinates: [[5, 5, 5]] };
     beforeChange = () => (stored = { ...stored, version: 40, values: { samples: [other] } });
-    marks.setPoint({ x: 1, y: 1 });
-    marks.setPoint({ x: 2, y: 2 });
+    void marks.setPoint({ x: 1, y: 1 });
+    void marks.setPoint({ x: 2, y: 2 });
     const mine = { model: 9, coordinates: [[1, 2, 3]] };
     await comes(() => expect(stored.values["samples"]).toEqual([other, mine, mine]));
     await isTold(texts.marks.point_set("North"));
@@ -143,7 +165,7 @@ describe("what is drawn on the surface", () => {
 
   it("is taken back by its notice, unless something came after it", async () => {
     const act = (): void => (shown[0]!.link as { act: () => void }).act();
-    marks.setPoint({ x: 1, y: 1 });
+    void marks.setPoint({ x: 1, y: 1 });
     await isTold(texts.marks.point_set("North"));
     act();
     await comes(() => expect(undone).toEqual([3]));
@@ -158,7 +180,7 @@ describe("what is drawn on the surface", () => {
     expect(marks.beginLine()).toBe(false);
     host.painting.brush.valueFor = () => 7;
     host.tables.find = () => null;
-    marks.setPoint({ x: 1, y: 1 });
+    void marks.setPoint({ x: 1, y: 1 });
     expect([told, host.painting.stroking]).toEqual([[], false]);
     expect(shown.map(({ title }) => title)).toEqual([
       texts.brush.no_record(8),

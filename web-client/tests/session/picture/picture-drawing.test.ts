@@ -165,3 +165,59 @@ describe("areas on a picture", () => {
     expect(parts).toEqual([]);
   });
 });
+
+describe("lines on a picture", () => {
+  it("have clicked points, and end at the last one or with a key", () => {
+    const { drawing, parts } = drawingOf("line");
+    click(drawing, 0, 0);
+    click(drawing, 1, 1); // one point is no line
+    expect([drawing.path, parts]).toEqual([[[0, 0]], []]);
+    click(drawing, 20, 0);
+    expect(drawing.hasCorners).toBe(true);
+    click(drawing, 21, 1);
+    click(drawing, 0, 0);
+    drawing.finish();
+    click(drawing, 0, 20);
+    drawing.finish();
+    const line = (...points: [number, number][]): PicturePart => ({ line: points });
+    expect(parts).toEqual([line([0, 0], [20, 0]), line([0, 0], [0, 20])]);
+  });
+
+  it("are drawn in one go, without closing at the first point", () => {
+    const { drawing, parts } = drawingOf("line");
+    drawing.down([0, 0]);
+    drawing.move([
+      [10, 0],
+      [1, 1],
+    ]);
+    drawing.up();
+    expect(parts).toEqual([
+      {
+        line: [
+          [0, 0],
+          [10, 0],
+          [1, 1],
+        ],
+      },
+    ]);
+  });
+
+  it("have at most as many points as a stored line", () => {
+    const { drawing, parts } = drawingOf("line");
+    drawing.down([0, 0]);
+    drawing.move(Array.from({ length: 2000 }, (_, i): [number, number] => [i + 1, 0]));
+    drawing.up();
+    expect(parts.map((part) => "line" in part && part.line.length)).toEqual([1000]);
+  });
+});
+
+describe("points on a picture", () => {
+  it("are where the pointer was released", () => {
+    const { drawing, parts } = drawingOf("point");
+    drawing.down([3, 4]);
+    drawing.move([[5, 6]]);
+    expect(drawing.path).toEqual([[5, 6]]);
+    drawing.up();
+    expect(parts).toEqual([{ point: [5, 6] }]);
+  });
+});

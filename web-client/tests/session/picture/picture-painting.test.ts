@@ -56,6 +56,20 @@ class FakeServer {
 const settled = (): Promise<void> => new Promise((done) => setTimeout(done));
 
 describe("painting on a picture", () => {
+  it("keeps a mark until it is saved and drawn, and reports no change of a layer", async () => {
+    const server = new FakeServer();
+    const mark: DrawnPart = { part: { point: [1, 2] }, color: "red" };
+    let save = (): void => {};
+    server.painting.mark(mark, () => new Promise((done) => (save = done)));
+    server.painting.mark(mark, () => Promise.reject(new Error("no surface")));
+    expect(server.painting.waiting).toHaveLength(2);
+    save();
+    await settled();
+    expect(server.painting.waiting).toEqual([]);
+    expect([server.redraws, server.changes]).toEqual([1, []]);
+    expect(server.failures).toEqual([new Error("no surface")]);
+  });
+
   it("sends one edit after the other, and then draws the picture once", async () => {
     const server = new FakeServer();
     const { painting } = server;
