@@ -13,6 +13,7 @@ import uuid
 import pytest
 from support.cameras import camera_from
 from support.meshes import folded_grid
+from support.pictures import png
 from support.strata_server import StrataServer, wait_for
 
 M = "/models/sheet"
@@ -52,6 +53,9 @@ def make_site(server):
         PHOTO,
         headers={"Content-Type": "application/pdf"},
     )
+    poses = b"#name,x,y,alt,heading,pitch,roll,f\nnorth.png,50,50,300,0,0,0,35\n"
+    server.ok("POST", M + "/photograph-poses?filename=poses.csv", poses)
+    server.ok("POST", M + "/photographs?filename=north.png", png(24, 16, lambda x, y: (x, y, 9)))
     server.add_person("ada", "annotator")
     return camera_from(model, (0.2, 0.3, 1))
 
@@ -128,9 +132,12 @@ def contents(server, sequence):
             [edit for edit in history if edit["sequence"] <= sequence],
         )
     attachments = server.ok("GET", "/tables/cracks/records/1/attachments").json()["attachments"]
+    photographs = server.ok("GET", M + "/photographs").json()["photographs"]
     model = server.ok("GET", M).json()
     return (
         layers,
+        photographs,
+        [server.ok("GET", f"{M}/photographs/{each['id']}/picture").body for each in photographs],
         server.ok("GET", "/tables/cracks/records").json()["records"],
         [server.ok("GET", f"/attachments/{each['id']}").body for each in attachments],
         server.ok("GET", f"{M}/source/sheet.ply").body,
