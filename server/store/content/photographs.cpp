@@ -23,6 +23,11 @@ constexpr auto kPhotographs = sql(
     "p.calibration, p.pose, p.version, p.media_type, b.bytes, encode(p.sha256, 'hex'), p.width, "
     "p.height FROM photographs p LEFT JOIN blobs b USING (sha256) ");
 
+// Of a model, whose names contain a text, with an image ($3) or without one ($4).
+constexpr auto kChosen =
+    sql("WHERE p.model_id = $1 AND position(lower($2) IN lower(p.name)) > 0 "
+        "AND CASE WHEN p.sha256 IS NULL THEN $4 ELSE $3 END ");
+
 photo::Calibration read_calibration(PgRow& row) {
   photo::Calibration calibration;
   calibration.lens.model = photo::lens_model_named(row.text()).value_or(photo::LensModel::pinhole);
@@ -223,17 +228,19 @@ Result<MergedPhotographs> Photographs::merge(ModelId model_id,
   return change(pool_, answer, work, kBulkLimits);
 }
 
-Result<Photographs::Page> Photographs::page(ModelId model_id, int limit, int offset,
-                                            const std::optional<std::string>& after_name) {
+Result<Photographs::Page> Photographs::page(ModelId model_id, const PageRequest& request) {
+  const auto add_choice = [&](Params& params) -> Params& {
+    const auto& with = request.with_original;
+    return params.id(model_id).text(request.text).boolean(!with || *with).boolean(!with || !*with);
+  };
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
-    const auto counts = STRATA_TRY(
-        connection.query("SELECT count(*), count(sha256) FROM photographs WHERE model_id = $1",
-                         Params().id(model_id)));
+    Params counted, read;
+    const auto counts = STRATA_TRY(connection.query(
+        sql("SELECT count(*), count(p.sha256) FROM photographs p ", kChosen), add_choice(counted)));
     // Every name is greater than the empty text.
     const auto rows = STRATA_TRY(connection.query(
-        sql(kPhotographs,
-            "WHERE p.model_id = $1 AND p.name > $2 ORDER BY p.name LIMIT $3 OFFSET $4"),
-        Params().id(model_id).text(after_name.value_or("")).integer(limit).integer(offset)));
+        sql(kPhotographs, kChosen, "AND p.name > $5 ORDER BY p.name LIMIT $6 OFFSET $7"),
+        add_choice(read).text(request.after).integer(request.limit).integer(request.offset)));
     Page page;
     page.total = counts.integer(0, 0);
     page.with_original = counts.integer(0, 1);

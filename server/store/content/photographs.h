@@ -65,12 +65,17 @@ class Photographs {
                                   std::span<const photo::PosedPhotograph> photographs,
                                   const IdempotentResponse<MergedPhotographs>& answer = {});
 
-  struct Page {
-    std::vector<Photograph> photographs;  // sorted by the bytes of their names
-    std::int64_t total = 0, with_original = 0;
+  struct PageRequest {
+    int limit = 0, offset = 0;
+    std::string after{};                  // a name
+    std::string text{};                   // a part of the name, without regard to case
+    std::optional<bool> with_original{};  // only photographs that have an image, or have none
   };
-  Result<Page> page(ModelId model_id, int limit, int offset,
-                    const std::optional<std::string>& after_name);
+  struct Page {
+    std::vector<Photograph> photographs;        // sorted by the bytes of their names
+    std::int64_t total = 0, with_original = 0;  // of the requested photographs, on all pages
+  };
+  Result<Page> page(ModelId model_id, const PageRequest& request);
   Result<std::vector<Photograph>> of_model(ModelId model_id);  // sorted in the same way
   // The ids and names alone, for the match of an image file with up to 20 000 names.
   Result<std::vector<std::pair<PhotographId, std::string>>> names(ModelId model_id);

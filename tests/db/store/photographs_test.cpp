@@ -1,5 +1,6 @@
 #include "store/content/photographs.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -157,13 +158,34 @@ TEST_F(PhotographsOfAModel, pages_are_sorted_by_name) {
     many.push_back(posed("IMG_" + std::to_string(10'000 + 7 * i % 2500)));
   ASSERT_EQ(merge(many)->added, 2500);
   ASSERT_TRUE(set(id_of("IMG_10002"), "picture"));
-  const auto page = photographs_.page(model_, 3, 0, "IMG_10000").value();
+  const auto page = photographs_.page(model_, {.limit = 3, .after = "IMG_10000"}).value();
   EXPECT_EQ(page.total, 2500);
   EXPECT_EQ(page.with_original, 1);
   ASSERT_EQ(page.photographs.size(), 3u);
   EXPECT_EQ(page.photographs[0].posed.name, "IMG_10001");
   EXPECT_TRUE(page.photographs[1].original);
-  EXPECT_EQ(photographs_.page(model_, 3, 2499, {})->photographs.size(), 1u);
+  EXPECT_EQ(photographs_.page(model_, {.limit = 3, .offset = 2499})->photographs.size(), 1u);
+}
+
+TEST_F(PhotographsOfAModel, pages_can_be_of_some_of_them) {
+  ASSERT_TRUE(merge({posed("a/NORTH_1"), posed("a/north_2"), posed("b/50%_x"), posed("b/Äste")}));
+  ASSERT_TRUE(set(id_of("a/north_2"), "picture"));
+  const auto names = [&](const std::string& text, std::optional<bool> with_original = {}) {
+    const auto page =
+        photographs_.page(model_, {.limit = 3, .text = text, .with_original = with_original});
+    std::vector<std::string> found{std::to_string(page->total),
+                                   std::to_string(page->with_original)};
+    for (const auto& photograph : page->photographs) found.push_back(photograph.posed.name);
+    return found;
+  };
+  using testing::ElementsAre;
+  EXPECT_THAT(names("North_"), ElementsAre("2", "1", "a/NORTH_1", "a/north_2"));
+  EXPECT_THAT(names("%_"), ElementsAre("1", "0", "b/50%_x"));
+  EXPECT_THAT(names("äST"), ElementsAre("1", "0", "b/Äste"));
+  EXPECT_THAT(names("c"), ElementsAre("0", "0"));
+  EXPECT_THAT(names("", true), ElementsAre("1", "1", "a/north_2"));
+  EXPECT_THAT(names("a/", false), ElementsAre("1", "0", "a/NORTH_1"));
+  EXPECT_THAT(names("", false), ElementsAre("3", "0", "a/NORTH_1", "b/50%_x", "b/Äste"));
 }
 
 TEST_F(PhotographsOfAModel, a_model_has_a_limit) {

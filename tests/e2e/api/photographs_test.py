@@ -129,6 +129,17 @@ def test_pages_follow_each_other(server, ids):
     refused(server.get(ALL + "?after=WzFd"), 422, "after")
 
 
+def test_a_list_can_be_of_some_photographs(server, ids):
+    found = server.get(ALL + "?q=SITE/&has_picture=false&limit=1")
+    assert found.json()["total"] == 4 and len(found.json()["photographs"]) == 1
+    rest = server.get("/" + found.headers["Link"].split(">")[0].split("<")[1]).json()
+    assert rest["total"] == 4
+    assert server.get(ALL + "?q=top.").json()["total"] == 2
+    assert server.get(ALL + "?has_picture=true").json()["photographs"] == []
+    refused(server.get(ALL + "?has_picture=yes"), 422, "has_picture")
+    refused(server.get(ALL + "?q=" + 201 * "a"), 422, "q")
+
+
 def test_photographs_that_see_a_place_are_found(server, ids):
     found = seeing(server, [5, 3, 50])
     assert found["position"] == pytest.approx([5, 3, 50], abs=1e-4)

@@ -151,6 +151,24 @@ test("camera poses and an image are imported", async () => {
   await shot("imported");
 });
 
+test("all photographs can be listed and searched", async () => {
+  const named = (name) => list().locator("ul.found").getByRole("button", { name });
+  await list().getByRole("radio", { name: words.photographs.all, exact: true }).click();
+  await named(/FRONT\.jpg/).waitFor();
+  await named(/BACK\.jpg/).waitFor();
+  await list().getByLabel(words.photographs.search).fill("WEST/");
+  await list().getByText(words.photographs.listed(1), { exact: true }).waitFor();
+  assert.equal(await named(/BACK\.jpg/).count(), 0);
+  await list().getByLabel(words.photographs.only_missing).check();
+  await list().getByText(words.photographs.listed(0), { exact: true }).waitFor();
+  await list().getByLabel(words.photographs.search).fill("");
+  await named(/BACK\.jpg/).waitFor();
+  assert.equal(await named(/FRONT\.jpg/).count(), 0);
+  await shot("all");
+  await list().getByRole("radio", { name: words.photographs.of_place, exact: true }).click();
+  await list().getByText(words.photographs.how).waitFor();
+});
+
 test("a click on the model lists the photographs of the place", async () => {
   const box = await browser.stage_box();
   await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.6 * box.height);

@@ -2912,9 +2912,9 @@ export interface Photograph {
 /** Photographs of a model, sorted by name. */
 export interface PhotographList {
   photographs: Photograph[];
-  /** Number of photographs of the model. */
+  /** Number of photographs of the model, or of those that `q` and `has_picture` select, on all pages. */
   total: number;
-  /** Number of photographs of the model that have an image. */
+  /** Number of these photographs that have an image. */
   with_picture: number;
 }
 

@@ -6490,8 +6490,10 @@ export interface operations {
         parameters: {
             query?: {
                 after?: components["parameters"]["after"];
+                has_picture?: boolean;
                 limit?: components["parameters"]["limit_of_all"];
                 offset?: components["parameters"]["offset"];
+                q?: string;
             };
             header?: {
                 "If-None-Match"?: components["parameters"]["if_none_match"];

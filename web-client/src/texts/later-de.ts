@@ -462,6 +462,13 @@ export const laterTexts = {
     delete_title: (n: number) => `${count(n, "Fotografie", "Fotografien")} löschen?`,
     delete_lead:
       "Die Kameraposen und die Bilder werden gelöscht. Das kann nicht rückgängig gemacht werden.",
+    which: "Aufgelistete Fotografien",
+    of_place: "Einer Stelle",
+    all: "Alle",
+    search: "Teil des Namens",
+    only_missing: "Nur Fotografien ohne Bild",
+    listed: (n: number) => count(n, "Fotografie", "Fotografien"),
+    more: "Mehr anzeigen",
   },
 
   photograph: {

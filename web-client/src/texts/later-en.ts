@@ -460,6 +460,13 @@ export const laterTexts = {
     delete_all: "Delete all photographs…",
     delete_title: (n: number) => `Delete ${count(n, "photograph", "photographs")}?`,
     delete_lead: "The camera poses and the images are deleted. This cannot be undone.",
+    which: "Listed photographs",
+    of_place: "Of a place",
+    all: "All",
+    search: "Part of the name",
+    only_missing: "Only photographs without an image",
+    listed: (n: number) => count(n, "photograph", "photographs"),
+    more: "Show more",
   },
 
   photograph: {

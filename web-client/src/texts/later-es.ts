@@ -463,6 +463,13 @@ export const laterTexts = {
     delete_all: "Eliminar todas las fotografías…",
     delete_title: (n: number) => `¿Eliminar ${count(n, "fotografía", "fotografías")}?`,
     delete_lead: "Se eliminan las poses de cámara y las imágenes. Esto no se puede deshacer.",
+    which: "Fotografías en la lista",
+    of_place: "De un lugar",
+    all: "Todas",
+    search: "Parte del nombre",
+    only_missing: "Solo fotografías sin imagen",
+    listed: (n: number) => count(n, "fotografía", "fotografías"),
+    more: "Mostrar más",
   },
 
   photograph: {

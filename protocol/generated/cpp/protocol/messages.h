@@ -2742,8 +2742,10 @@ inline constexpr Schema kSchemaOf<Photograph> = Schema::Photograph;
 // Photographs of a model, sorted by name.
 struct PhotographList {
   std::vector<Photograph> photographs;
-  int total = 0;  // Number of photographs of the model.
-  int with_picture = 0;  // Number of photographs of the model that have an image.
+  // Number of photographs of the model, or of those that `q` and `has_picture` select, on all
+  // pages.
+  int total = 0;
+  int with_picture = 0;  // Number of these photographs that have an image.
   bool operator==(const PhotographList&) const = default;
 };
 void read(const nlohmann::json& json, PhotographList& value);

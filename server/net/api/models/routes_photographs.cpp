@@ -10,6 +10,7 @@
 #include "app/photographs/undistort.h"
 #include "core/mapped_file.h"
 #include "core/memory_ledger.h"
+#include "core/text/utf8.h"
 #include "domain/people/role.h"
 #include "domain/scene/model.h"
 #include "media/jpeg_facts.h"
@@ -44,6 +45,7 @@ constexpr const char* kPictureUpload = "Send the photograph as the body: JPEG, P
 constexpr std::uint64_t kMaxOriginalBytes = std::uint64_t{512} << 20;
 constexpr std::size_t kMaxListed = 100;
 constexpr std::size_t kMaxUnusedName = 1024;
+constexpr std::size_t kMaxSearch = 200;  // characters
 constexpr int kMinUndistorted = 16;
 constexpr int kUsualThumbnail = 256;  // is made before the page asks for it
 constexpr int kJpegQuality = 90;
@@ -167,13 +169,22 @@ Result<store::Photograph> stored_photograph(const RouteContext& context, const R
 Result<Response> list_photographs(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(page_of(request, kMaxPage));
   const auto model = STRATA_TRY(stored_model(context, request));
-  std::optional<std::string> after;
+  store::Photographs::PageRequest wanted{.limit = page.limit + 1, .offset = page.offset};
   if (page.after) {
     if (page.after->size() != 1 || !page.after->front().is_string()) return wrong_place();
-    after = page.after->front().get<std::string>();
+    wanted.after = page.after->front().get<std::string>();
   }
-  auto found =
-      STRATA_TRY(context.store.photographs().page(model.id, page.limit + 1, page.offset, after));
+  wanted.text = request.query_or("q", {});
+  if (character_count(wanted.text) > kMaxSearch)
+    return fail(ErrorCode::invalid, "Text too long",
+                "`q` can have at most " + std::to_string(kMaxSearch) + " characters.", "q");
+  if (const std::string has = request.query_or("has_picture", {}); !has.empty()) {
+    if (has != "true" && has != "false")
+      return fail(ErrorCode::invalid, "Invalid value", "`has_picture` must be true or false.",
+                  "has_picture");
+    wanted.with_original = has == "true";
+  }
+  auto found = STRATA_TRY(context.store.photographs().page(model.id, wanted));
   const auto last = end_page(found.photographs, page, [](const store::Photograph& photograph) {
     return ListPlace::array({photograph.posed.name});
   });
@@ -413,7 +424,7 @@ void add_photograph_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = all,
               .handler = handler(list_photographs),
-              .query = {"limit", "offset", "after"}});
+              .query = {"limit", "offset", "after", "q", "has_picture"}});
   router.add({.method = Method::post,
               .pattern = all,
               .handler = handler(add_picture),

@@ -1,5 +1,5 @@
-// <strata-photographs-dialog>: the photographs that see a place of the model, next to the 3D view.
-// Curators also import camera poses and images. Its event `opened` contains a photograph to show.
+// <strata-photographs-dialog>: the photographs that see a place of the model, or all of them, next to
+// the 3D view. Curators also import camera poses and images. Its event `opened` contains a photograph to show.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -14,8 +14,10 @@ import { ask } from "../../ui/dialog";
 import "../../ui/file-choice";
 import { icon } from "../../ui/icons";
 import { notices } from "../../ui/notices";
+import { radioGroup } from "../../ui/radio-group";
 import { Sending } from "../../ui/sending";
 import { formStyles, sharedStyles } from "../../ui/styles";
+import { PhotographList } from "./photograph-list";
 import { PictureImport } from "./picture-import";
 import { photographsOf } from "./photographs-of";
 
@@ -24,9 +26,14 @@ const kThumbnail = 256;
 const kPoseEndings = ".xml,.csv,.xmp,.txt,.bin,.out,.zip";
 const kPictureTypes = "image/jpeg,image/png,image/tiff";
 const kMostRefused = 20; // listed reasons
+const kSearchAfterMs = 250;
+const kMostSearched = 200; // characters, as in the contract
 
 /** Returns the last part of a name with folders. */
 const shortName = (name: string): string => name.slice(name.search(/[^/\\]*$/));
+
+const qualityOf = ({ mm_per_pixel: mm, angle }: SeeingPhotograph): string =>
+  words.quality(formatNumber(mm, 2), formatCount(Math.round(angle)));
 
 @customElement("strata-photographs-dialog")
 export class StrataPhotographsDialog extends LitElement {
@@ -34,6 +41,8 @@ export class StrataPhotographsDialog extends LitElement {
   @state() private _report: PosesReport | null = null;
   private readonly _poses = new Sending(this);
   private _pictures!: PictureImport;
+  private _all: PhotographList | null = null; // while all photographs are listed
+  private _timer = 0;
   private _imports = false; // whether the fields for the import are open
 
   constructor() {
@@ -111,6 +120,7 @@ export class StrataPhotographsDialog extends LitElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     this._pictures.stop();
+    this.listPlace();
     photographsOf(this.session).close();
   }
 
@@ -118,11 +128,60 @@ export class StrataPhotographsDialog extends LitElement {
     const photographs = photographsOf(this.session);
     const { counts } = photographs;
     return html`<strata-dialog docked heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      ${counts?.total === 0 ? html`<p>${this.session.canCurate ? words.none_yet : words.none}</p>` : this.found()}
+      ${counts?.total === 0 ? html`<p>${this.session.canCurate ? words.none_yet : words.none}</p>` : this.list()}
       ${photographs.problem ? html`<p class="error" role="alert">${photographs.problem}</p>` : nothing}
       ${this.session.canCurate ? this.import() : nothing}
       ${counts && counts.total > 0 ? html`<p class="hint">${words.counts(counts.total, counts.pictures)}</p>` : nothing}
     </strata-dialog>`;
+  }
+
+  private list(): TemplateResult {
+    const all = this._all;
+    return html`${radioGroup({
+      label: words.which,
+      class: "segments",
+      choices: [
+        { value: false, content: words.of_place },
+        { value: true, content: words.all },
+      ],
+      chosen: all !== null,
+      choose: (chosen) => (chosen ? this.listAll() : this.listPlace()),
+    })}
+    ${all ? this.all(all) : this.found()}`;
+  }
+
+  private listAll(): void {
+    const { api, modelId } = this.session;
+    this._all ??= new PhotographList(api, modelId, () => this.requestUpdate());
+    void this._all.choose("", false);
+  }
+
+  private listPlace(): void {
+    clearTimeout(this._timer);
+    this._all?.stop();
+    this._all = null;
+    this.requestUpdate();
+  }
+
+  private all(all: PhotographList): TemplateResult {
+    const search = (event: Event): void => {
+      const text = (event.target as HTMLInputElement).value.trim();
+      clearTimeout(this._timer);
+      this._timer = window.setTimeout(() => void all.choose(text, all.missing), kSearchAfterMs);
+    };
+    const onlyMissing = (event: Event): void =>
+      void all.choose(all.text, (event.target as HTMLInputElement).checked);
+    return html`<label class="field">
+        <span>${words.search}</span>
+        <input type="search" maxlength=${kMostSearched} @input=${search} />
+      </label>
+      <label class="check"><input type="checkbox" .checked=${all.missing} @change=${onlyMissing} /> ${words.only_missing}</label>
+      <p role="status">${all.total === null ? texts.loading : words.listed(all.total)}</p>
+      ${all.problem ? html`<p class="error" role="alert">${all.problem}</p>` : nothing}
+      <ul class="found" aria-label=${words.all}>
+        ${all.photographs.map((each) => html`<li>${this.photograph(each)}</li>`)}
+      </ul>
+      ${all.hasMore ? html`<div><button ?disabled=${all.isLoading} @click=${() => void all.readMore()}>${words.more}</button></div>` : nothing}`;
   }
 
   private found(): TemplateResult {
@@ -136,14 +195,14 @@ export class StrataPhotographsDialog extends LitElement {
       ${
         found
           ? html`<ul class="found" aria-label=${words.title}>
-              ${found.photographs.map((each) => html`<li>${this.photograph(each)}</li>`)}
+              ${found.photographs.map((each) => html`<li>${this.photograph(each.photograph, qualityOf(each))}</li>`)}
             </ul>`
           : nothing
       }
       ${found && found.unknown_size > 0 ? html`<p class="hint">${words.unknown_size(found.unknown_size)}</p>` : nothing}`;
   }
 
-  private photograph({ photograph, mm_per_pixel: mm, angle }: SeeingPhotograph): TemplateResult {
+  private photograph(photograph: Photograph, quality = ""): TemplateResult {
     const { api, modelId } = this.session;
     const path = { model: modelId, photograph: photograph.id };
     const open = (): boolean =>
@@ -159,7 +218,7 @@ export class StrataPhotographsDialog extends LitElement {
           : html`<span class="empty">${words.no_picture}</span>`
       }
       <small>${shortName(photograph.name)}</small>
-      <small class="hint">${words.quality(formatNumber(mm, 2), formatCount(Math.round(angle)))}</small>
+      ${quality ? html`<small class="hint">${quality}</small>` : nothing}
     </button>`;
   }
 
@@ -226,6 +285,12 @@ export class StrataPhotographsDialog extends LitElement {
       </ul>`;
   }
 
+  private readAgain(): void {
+    photographsOf(this.session).readAgain();
+    const all = this._all;
+    if (all) void all.choose(all.text, all.missing);
+  }
+
   private async importPoses(files: File[]): Promise<void> {
     const { api, modelId } = this.session;
     const [first] = files;
@@ -238,13 +303,13 @@ export class StrataPhotographsDialog extends LitElement {
         progress,
       ),
     );
-    if (this._report) photographsOf(this.session).readAgain();
+    if (this._report) this.readAgain();
   }
 
   private async addPictures(files: File[]): Promise<void> {
     const stored = await this._pictures.send(files);
     if (stored > 0) notices.show("success", words.stored(stored));
-    if (this.isConnected) photographsOf(this.session).readAgain();
+    if (this.isConnected) this.readAgain();
   }
 
   private async deleteAll(): Promise<void> {
@@ -259,7 +324,7 @@ export class StrataPhotographsDialog extends LitElement {
     try {
       await api.send("DELETE /models/{model}/photographs", { path: { model: modelId } });
       this._report = null;
-      photographsOf(this.session).readAgain();
+      this.readAgain();
     } catch (error) {
       notices.error(error);
     }
