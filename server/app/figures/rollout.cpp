@@ -6,11 +6,7 @@
 #include "app/layers/drawn_layers.h"
 #include "domain/scene/model.h"
 #include "mesh/surface/surface_normals.h"
-#include "query/sampling/surface_colors.h"
-#include "room/caches/surface_image_cache.h"
-#include "room/queries.h"
 #include "room/surface.h"
-#include "room/surface_images.h"
 
 namespace strata::app {
 namespace {
@@ -19,30 +15,6 @@ namespace {
 // toward the viewer.
 const glm::dvec3 kLight = glm::normalize(glm::dvec3(-1, 1, 1.4));
 constexpr double kAmbient = 0.35;
-
-struct Colors {
-  query::SurfaceColors of_surface;
-  std::vector<MemoryLedger::Share> memory;  // reserved for the photos
-};
-
-Result<Colors> compose(const Services& services, const RolloutRequest& request) {
-  room::Room& room = *request.room;
-  Colors colors{query::SurfaceColors(room.surface().geometry()), {}};
-  const auto images =
-      request.shown.images.value_or(room::surface_images_shown(room.surface_images().all()));
-  for (const room::SurfaceImageView& image : images) {
-    DecodedPhoto photo = STRATA_TRY(decode_photo(services, image));
-    colors.of_surface.add_photo(std::move(photo.picture), image.opacity);
-    colors.memory.push_back(std::move(photo.memory));
-  }
-  for (const Layer& layer : request.layers) {
-    auto tiles = STRATA_TRY(room.queries().tiles(layer.slug, request.at));
-    query::DrawnLayer drawn = STRATA_TRY(
-        drawn_layer(services, request.role, {layer, std::move(tiles)}, request.shown.of(layer.id)));
-    colors.of_surface.add_layer(std::move(drawn));
-  }
-  return colors;
-}
 
 // Returns the brightness of a point: 1 where it has the normal of the fitted surface.
 double relief_at(const mesh::RolloutSheet& sheet, const mesh::RolloutHit& pixel,
@@ -64,7 +36,8 @@ Result<Picture> draw_rollout(const Services& services, const RolloutRequest& req
                              Progress& progress) {
   const auto geometry = request.room->surface().geometry();
   const auto tree = request.room->surface().search_tree();
-  const Colors colors = STRATA_TRY(compose(services, request));
+  const ComposedSurface surface = STRATA_TRY(compose_surface(
+      services, *request.room, request.role, request.layers, request.shown, request.at));
   std::optional<mesh::SurfaceNormals> normals;
   if (request.relief) normals.emplace(geometry);
   Picture picture{window.width, window.height, {}};
@@ -76,7 +49,7 @@ Result<Picture> draw_rollout(const Services& services, const RolloutRequest& req
     for (const auto& pixel : pixels) {
       if (pixel) {
         const double brightness = normals ? relief_at(plan.sheet, *pixel, *normals) : 1;
-        const glm::dvec3 color = brightness * colors.of_surface.at(pixel->hit);
+        const glm::dvec3 color = brightness * surface.colors.at(pixel->hit);
         for (int i = 0; i < 3; ++i)
           rgba[i] = static_cast<std::uint8_t>(std::lround(std::clamp(color[i], 0.0, 255.0)));
         rgba[3] = 255;

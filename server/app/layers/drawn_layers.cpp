@@ -1,8 +1,15 @@
 #include "app/layers/drawn_layers.h"
 
+#include <algorithm>
+
 #include "domain/layers/layer.h"
+#include "mesh/texture/texture_sampler.h"
 #include "room/caches/record_colors.h"
+#include "room/caches/surface_image_cache.h"
+#include "room/queries.h"
 #include "room/rooms.h"
+#include "room/surface.h"
+#include "room/surface_images.h"
 #include "store/content/surface_images.h"
 #include "store/store.h"
 
@@ -36,6 +43,29 @@ Result<query::DrawnLayer> drawn_layer(const Services& services, Role role,
                            std::move(palette),
                            settings.opacity.value_or(view.layer.opacity),
                            view.layer.blend};
+}
+
+Result<ComposedSurface> compose_surface(const Services& services, room::Room& room, Role role,
+                                        const std::vector<Layer>& bottom_to_top,
+                                        const room::ViewSettings& shown, room::At at,
+                                        std::optional<int> pixels) {
+  ComposedSurface composed{query::SurfaceColors(room.surface().geometry()), {}};
+  const auto images =
+      shown.images.value_or(room::surface_images_shown(room.surface_images().all()));
+  for (const room::SurfaceImageView& image : images) {
+    DecodedPhoto photo = STRATA_TRY(decode_photo(services, image));
+    while (pixels && std::min(photo.picture.width, photo.picture.height) >= 2 * *pixels)
+      photo.picture = mesh::halve(photo.picture);
+    composed.colors.add_photo(std::move(photo.picture), image.opacity);
+    composed.memory.push_back(std::move(photo.memory));
+  }
+  for (const Layer& layer : bottom_to_top) {
+    auto tiles = STRATA_TRY(room.queries().tiles(layer.slug, at));
+    query::DrawnLayer drawn =
+        STRATA_TRY(drawn_layer(services, role, {layer, std::move(tiles)}, shown.of(layer.id)));
+    composed.colors.add_layer(std::move(drawn));
+  }
+  return composed;
 }
 
 }  // namespace strata::app

@@ -17,6 +17,7 @@ struct FeatureField {
   enum class Kind { boolean, integer, real, text };
   std::string name;  // unique in its table; case does not matter
   Kind kind = Kind::text;
+  std::vector<std::string> choices{};  // the possible texts of an enumeration
 };
 
 enum class FeatureKind { areas, lines, points };

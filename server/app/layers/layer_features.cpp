@@ -9,7 +9,6 @@
 #include "app/records/record_csv.h"
 #include "domain/tables/column_value.h"
 #include "domain/tables/surface_feature.h"
-#include "room/queries.h"
 #include "room/surface.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
@@ -96,7 +95,7 @@ class Fields {
     std::string name = column.slug;
     while (taken_.contains(name)) name = "column_" + name;
     taken_.insert(name);
-    fields_.push_back({std::move(name), kind_of(column)});
+    fields_.push_back({std::move(name), kind_of(column), column.choices});
   }
   std::vector<FeatureField> take() { return std::move(fields_); }
 
@@ -127,9 +126,8 @@ std::uint32_t class_of(const query::Quantity& quantity, const Layer& layer,
   return range;
 }
 
-FeatureTable areas_of(const FeatureRequest& request, const query::Quantities& all,
-                      const query::Perimeters& perimeters, query::PlaneOutlines outlines,
-                      const Records& records) {
+LayerClasses classes_in(const FeatureRequest& request, room::LayerAreas areas,
+                        const Records& records) {
   const Layer& layer = request.layer;
   const Model model = request.room->model();
   const query::ValueClasses classes = query::classes_of(layer);
@@ -151,12 +149,14 @@ FeatureTable areas_of(const FeatureRequest& request, const query::Quantities& al
   Fields fields(std::move(own));
   for (const Column& column : records.columns) fields.add(column);
   FeatureTable table{FeatureKind::areas, "areas", fields.take(), {}};
+  std::vector<std::uint32_t> of_features;
   const auto number = [](const std::optional<double>& value) {
     return value ? FeatureValue(*value) : FeatureValue{};
   };
-  for (const query::Quantity& quantity : all.classes) {
+  for (const query::Quantity& quantity : areas.quantities.classes) {
     Feature& feature = table.features.emplace_back();
     const std::uint32_t a_class = class_of(quantity, layer, classes);
+    of_features.push_back(a_class);
     const std::int64_t key = has_keys ? static_cast<std::int64_t>(*quantity.value) : 0;
     if (has_keys)
       feature.values = {key};
@@ -166,19 +166,17 @@ FeatureTable areas_of(const FeatureRequest& request, const query::Quantities& al
       feature.values = {number(quantity.from), number(quantity.to)};
     const std::string label = quantity_label(quantity, layer, records.names);
     feature.values.push_back(text_or_nothing(has_keys ? label : quantity_text(quantity, label)));
-    const auto length = perimeters.of_class.find(a_class);
+    const auto length = areas.perimeters.of_class.find(a_class);
     feature.values.emplace_back(quantity.area_m2);
     feature.values.emplace_back(
-        length == perimeters.of_class.end() ? 0 : length->second * model.metres());
+        length == areas.perimeters.of_class.end() ? 0 : length->second * model.metres());
     feature.values.emplace_back(static_cast<std::int64_t>(quantity.texels));
     feature.values.emplace_back(static_cast<std::int64_t>(quantity.pieces));
     feature.values.emplace_back(layer.slug);
     feature.values.emplace_back(model.slug);
     add_record(feature, records, key);
-    if (const auto outline = outlines.find(a_class); outline != outlines.end())
-      feature.geometry = std::move(outline->second);
   }
-  return table;
+  return {std::move(areas), std::move(table), std::move(of_features)};
 }
 
 FeatureTable features_in(const FeatureRequest& request, const Records& records,
@@ -225,25 +223,43 @@ int epsg_of(const Model& model, const query::OutlinePlane& plane) {
   return code;
 }
 
-}  // namespace
+// The classes of a layer with the records of its table.
+struct Described {
+  LayerClasses classes;
+  Records records;
+};
 
-Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& request) {
-  const Model model = request.room->model();
-  const auto areas = request.room->queries().layer_areas(request.layer.slug, request.at);
-  if (!areas) return tl::unexpected(areas.error());
-  const query::Quantities& all = areas->quantities;
-  auto outlines =
-      query::plane_outlines(areas->view, *request.room->surface().geometry(), *areas->map,
-                            query::classes_of(request.layer), request.plane);
-  if (!outlines) return tl::unexpected(outlines.error());
+Result<Described> describe(store::Store& store, const FeatureRequest& request) {
+  auto areas = STRATA_TRY(request.room->queries().layer_areas(request.layer.slug, request.at));
   Records records;
   if (request.layer.table) {
     std::vector<std::int64_t> painted;
-    for (const query::Quantity& quantity : all.classes)
+    for (const query::Quantity& quantity : areas.quantities.classes)
       painted.push_back(static_cast<std::int64_t>(*quantity.value));
     auto read = STRATA_TRY(read_records(store, request, std::move(painted)));
     records = std::move(read);
   }
+  LayerClasses classes = classes_in(request, std::move(areas), records);
+  return Described{std::move(classes), std::move(records)};
+}
+
+}  // namespace
+
+Result<LayerClasses> layer_classes(store::Store& store, const FeatureRequest& request) {
+  auto described = STRATA_TRY(describe(store, request));
+  return std::move(described.classes);
+}
+
+Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& request) {
+  const Model model = request.room->model();
+  auto [classes, records] = STRATA_TRY(describe(store, request));
+  auto outlines =
+      query::plane_outlines(classes.areas.view, *request.room->surface().geometry(),
+                            *classes.areas.map, query::classes_of(request.layer), request.plane);
+  if (!outlines) return tl::unexpected(outlines.error());
+  for (std::size_t i = 0; i < classes.classes.size(); ++i)
+    if (const auto outline = outlines->find(classes.classes[i]); outline != outlines->end())
+      classes.table.features[i].geometry = std::move(outline->second);
   FeatureSet set;
   set.name = model.slug + "-" + request.layer.slug;
   set.unit = name(model.unit);
@@ -251,7 +267,7 @@ Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& req
     set.axes += "xyz"[axis];
   set.epsg = epsg_of(model, request.plane);
   set.description = request.layer.name + " on " + model.name + ": " + set.axes + " in " + set.unit;
-  set.tables.push_back(areas_of(request, all, areas->perimeters, std::move(*outlines), records));
+  set.tables.push_back(std::move(classes.table));
   for (const Column& column : records.surface_features)
     set.tables.push_back(features_in(request, records, column));
   return set;

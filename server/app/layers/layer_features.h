@@ -5,6 +5,7 @@
 #include "domain/people/role.h"
 #include "query/maps/plane_outlines.h"
 #include "room/at.h"
+#include "room/queries.h"
 #include "room/room.h"
 #include "store/store.h"
 
@@ -23,5 +24,14 @@ struct FeatureRequest {
 // of its records on the model. Each feature has its name and the values of the record in the
 // columns that are visible to the role. Blocks.
 Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& request);
+
+// The classes of a layer that occur, as the areas of layer_features without their geometry.
+struct LayerClasses {
+  room::LayerAreas areas;
+  FeatureTable table;
+  std::vector<std::uint32_t> classes;  // by feature, in the sense of query::classes_of
+};
+// The plane of the request has no effect. Blocks.
+Result<LayerClasses> layer_classes(store::Store& store, const FeatureRequest& request);
 
 }  // namespace strata::app

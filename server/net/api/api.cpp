@@ -180,6 +180,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_snapshot_routes(router_, context_);
   add_timeline_routes(router_, context_);
   add_frame_routes(router_, context_);
+  add_export_routes(router_, context_);
   add_figure_routes(router_, context_);
   add_layer_preview_routes(router_, context_);
   add_rollout_routes(router_, context_);

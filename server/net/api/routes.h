@@ -48,6 +48,7 @@ void add_selection_routes(Router& router, const RouteContext& context);
 void add_snapshot_routes(Router& router, const RouteContext& context);
 void add_timeline_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);
+void add_export_routes(Router& router, const RouteContext& context);
 void add_figure_routes(Router& router, const RouteContext& context);
 void add_layer_preview_routes(Router& router, const RouteContext& context);
 void add_rollout_routes(Router& router, const RouteContext& context);

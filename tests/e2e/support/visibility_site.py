@@ -267,6 +267,11 @@ def reading_bodies(camera):
                 "rollout": {"axis": {"point": [50, 50, -60], "direction": [0, 1, 0]}},
             },
         ],
+        "export_model": [
+            {"texture_size": 512, "texture_format": "png"},
+            {"texture_size": 512, "features": "finds"},
+            {"texture_size": 512, "features": "cracks", "at": 2},
+        ],
         "make_report": [
             {"figures": [], "record_pictures": False, "format": "docx"},
             {"figures": [{"view": "plan"}], "record_pictures": False, "format": "pdf"},

@@ -4015,6 +4015,21 @@ export interface ReportRequest {
   record_pictures?: boolean;
 }
 
+/** 3D model for other programs. All members are optional. Without members, the file contains the mesh with a texture that shows the model as it is visible by default. */
+export interface ModelExportRequest {
+  /** The layers in the texture, from bottom to top. Default: the layers that are visible by default. */
+  layers?: LayerRef[];
+  /** A layer whose records or classes become features with properties. Default: no features. */
+  features?: LayerRef;
+  at?: At;
+  /** The width and height of the texture in pixels. The server uses the next power of two. Default: the size that shows each texel of the layers and each pixel of the surface images, but at least 1024 and at most 4096. */
+  texture_size?: number;
+  /** `png` keeps the exact colors, but the file is larger. Default: "jpeg". */
+  texture_format?: "jpeg" | "png";
+  /** Whether programs show the colors of the texture without light (KHR_materials_unlit). Colors are then the same as in the legend, but the relief of the surface is not visible. Default: false. */
+  unlit?: boolean;
+}
+
 /** Class of a column's values. A class of numbers is the range from `from` (included) to `to`. Only the last class includes `to`. All other classes have a `value`. */
 export interface ColumnClass {
   from?: number;

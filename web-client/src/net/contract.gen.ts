@@ -615,6 +615,25 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/exports": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Create a 3D model for other programs */
+        post: operations["export_model"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/figures": {
         parameters: {
             query?: never;
@@ -3129,6 +3148,8 @@ export interface components {
         Model: wire.Model;
         /** Area of one key on one model */
         ModelArea: wire.ModelArea;
+        /** 3D model for other programs */
+        ModelExportRequest: wire.ModelExportRequest;
         /** Models */
         ModelList: wire.ModelList;
         /** Changes to a model's metadata */
@@ -4406,6 +4427,7 @@ export interface operations {
                     "image/png": string;
                     "image/svg+xml": string;
                     "image/tiff": string;
+                    "model/gltf-binary": string;
                     "text/csv": string;
                 };
             };
@@ -5137,6 +5159,43 @@ export interface operations {
                 };
                 content: {
                     "text/event-stream": string;
+                };
+            };
+        };
+    };
+    export_model: {
+        parameters: {
+            query?: {
+                lang?: string;
+            };
+            header?: {
+                Prefer?: string;
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ModelExportRequest"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "model/gltf-binary": string;
+                };
+            };
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
                 };
             };
         };

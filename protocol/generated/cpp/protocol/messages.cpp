@@ -1245,6 +1245,22 @@ void read(const nlohmann::json& json, ReportPart& value) {
 
 nlohmann::json to_json(const ReportPart& value) { return name(value); }
 
+std::string_view name(ModelExportRequestTextureFormat value) {
+  switch (value) {
+    case ModelExportRequestTextureFormat::jpeg: return "jpeg";
+    case ModelExportRequestTextureFormat::png: return "png";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ModelExportRequestTextureFormat& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "jpeg") value = ModelExportRequestTextureFormat::jpeg;
+  if (text == "png") value = ModelExportRequestTextureFormat::png;
+}
+
+nlohmann::json to_json(const ModelExportRequestTextureFormat& value) { return name(value); }
+
 std::string_view name(SelectionAudience value) {
   switch (value) {
     case SelectionAudience::personal: return "personal";
@@ -4918,6 +4934,26 @@ nlohmann::json to_json(const ReportRequest& value) {
   write_optional_member(json, "figures", value.figures);
   write_member(json, "max_records", value.max_records);
   write_member(json, "record_pictures", value.record_pictures);
+  return json;
+}
+
+void read(const nlohmann::json& json, ModelExportRequest& value) {
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "features", value.features);
+  read_optional_member(json, "at", value.at);
+  read_optional_member(json, "texture_size", value.texture_size);
+  read_optional_member(json, "texture_format", value.texture_format);
+  read_optional_member(json, "unlit", value.unlit);
+}
+
+nlohmann::json to_json(const ModelExportRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "features", value.features);
+  write_optional_member(json, "at", value.at);
+  write_optional_member(json, "texture_size", value.texture_size);
+  write_member(json, "texture_format", value.texture_format);
+  write_member(json, "unlit", value.unlit);
   return json;
 }
 

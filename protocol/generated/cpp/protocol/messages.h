@@ -405,6 +405,7 @@ enum class Schema {
   ReportField,
   ReportFigure,
   ReportRequest,
+  ModelExportRequest,
   JobFile,
   ColumnClass,
   ColumnClasses,
@@ -431,7 +432,7 @@ enum class Schema {
   SheetStroke,
   Unrolled,
 };
-constexpr int kSchemaCount = 405;
+constexpr int kSchemaCount = 406;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -3976,6 +3977,34 @@ void read(const nlohmann::json& json, ReportRequest& value);
 nlohmann::json to_json(const ReportRequest& value);
 template <>
 inline constexpr Schema kSchemaOf<ReportRequest> = Schema::ReportRequest;
+
+enum class ModelExportRequestTextureFormat { jpeg, png };
+std::string_view name(ModelExportRequestTextureFormat value);
+void read(const nlohmann::json& json, ModelExportRequestTextureFormat& value);
+nlohmann::json to_json(const ModelExportRequestTextureFormat& value);
+
+// 3D model for other programs. All members are optional. Without members, the file contains the mesh with a texture that shows the model as it is visible by default.
+struct ModelExportRequest {
+  // The layers in the texture, from bottom to top. Default: the layers that are visible by default.
+  std::optional<std::vector<LayerRef>> layers;
+  // A layer whose records or classes become features with properties. Default: no features.
+  std::optional<LayerRef> features;
+  std::optional<At> at;
+  // The width and height of the texture in pixels. The server uses the next power of two. Default:
+  // the size that shows each texel of the layers and each pixel of the surface images, but at least
+  // 1024 and at most 4096.
+  std::optional<int> texture_size;
+  // `png` keeps the exact colors, but the file is larger.
+  ModelExportRequestTextureFormat texture_format = ModelExportRequestTextureFormat::jpeg;
+  // Whether programs show the colors of the texture without light (KHR_materials_unlit). Colors are
+  // then the same as in the legend, but the relief of the surface is not visible.
+  bool unlit = false;
+  bool operator==(const ModelExportRequest&) const = default;
+};
+void read(const nlohmann::json& json, ModelExportRequest& value);
+nlohmann::json to_json(const ModelExportRequest& value);
+template <>
+inline constexpr Schema kSchemaOf<ModelExportRequest> = Schema::ModelExportRequest;
 
 // Class of a column's values. A class of numbers is the range from `from` (included) to `to`. Only the last class includes `to`. All other classes have a `value`.
 struct ColumnClass {

@@ -414,6 +414,17 @@ export const particulars = {
       },
     }),
   },
+  export_model: {
+    path: { model: one("wall") },
+    // small textures; larger ones use the same code but need more time
+    ...json({
+      by_name: {
+        texture_size: one(512, 600, 100),
+        layers: one([], ["cracks"], ["nothing"]),
+        features: one("cracks", "units", "nothing"),
+      },
+    }),
+  },
   make_report: {
     path: { model: one("wall") },
     // few drawings, as each takes a second

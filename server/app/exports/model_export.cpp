@@ -1,0 +1,100 @@
+#include "app/exports/model_export.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "app/exports/feature_ids.h"
+#include "app/layers/drawn_layers.h"
+#include "app/layers/layer_features.h"
+#include "core/uuid.h"
+#include "domain/scene/model.h"
+#include "media/picture_writer.h"
+#include "mesh/io/gltf/write_glb.h"
+#include "query/sampling/baked_colors.h"
+#include "room/caches/surface_image_cache.h"
+#include "room/rooms.h"
+#include "room/surface.h"
+#include "room/surface_images.h"
+
+namespace strata::app {
+namespace {
+
+constexpr JpegSettings kTexture{92, true};
+// The stages of the task after query::kBaked.
+constexpr double kEncoded = 0.85, kIdsWritten = 0.9;
+
+// Encodes the texture in pieces, so that a job can be cancelled.
+Result<mesh::GlbImage> encode(const Picture& picture, PictureFormat format, Progress& progress) {
+  constexpr int kRows = 64;
+  PictureWriter writer(format, picture.width, picture.height, kTexture);
+  const auto row_bytes = std::size_t{4} * static_cast<std::size_t>(picture.width);
+  for (int y = 0; y < picture.height; y += kRows) {
+    if (progress.cancelled()) return cancelled_problem();
+    progress.report(static_cast<double>(y) / picture.height, "Writing the texture");
+    const auto rows = static_cast<std::size_t>(std::min(kRows, picture.height - y));
+    writer.put({picture.rgba.data() + row_bytes * static_cast<std::size_t>(y), row_bytes * rows});
+  }
+  return mesh::GlbImage{std::string(media_type(format)), writer.finish()};
+}
+
+Result<mesh::GlbImage> make_texture(const Services& services, const ModelExport& request,
+                                    Progress& progress) {
+  const int size =
+      request.texture_size.value_or(default_texture_size(*request.room, request.layers));
+  const auto geometry = request.room->surface().geometry();
+  const auto memory = STRATA_TRY(services.rooms.memory().reserve(
+      query::bytes_to_bake(*geometry, size), "the texture of a model"));
+  Picture picture;
+  {
+    const ComposedSurface surface = STRATA_TRY(compose_surface(
+        services, *request.room, request.role, request.layers, {}, request.at, size));
+    auto baked = STRATA_TRY(query::bake_colors(*geometry, surface.colors, size, progress));
+    picture = std::move(baked);
+  }
+  progress.begin_stage(query::kBaked, kEncoded);
+  return encode(picture, request.texture_format, progress);
+}
+
+}  // namespace
+
+int default_texture_size(room::Room& room, const std::vector<Layer>& layers) {
+  constexpr unsigned kMin = 1024, kMax = 4096;
+  unsigned side = kMin;
+  for (const Layer& layer : layers) side = std::max(side, static_cast<unsigned>(layer.resolution));
+  for (const SurfaceImage& image : room.surface_images().all())
+    if (image.visible)
+      side = std::max(side, static_cast<unsigned>(std::max(image.width, image.height)));
+  return static_cast<int>(std::bit_ceil(std::min(side, kMax)));
+}
+
+Result<std::shared_ptr<const TemporaryFile>> export_model(const Services& services,
+                                                          const ModelExport& request,
+                                                          const std::filesystem::path& folder,
+                                                          Progress& progress) {
+  const Model description = request.room->model();
+  mesh::GlbModel model;
+  model.name = description.name;
+  model.copyright = description.credit;
+  model.geometry = request.room->surface().geometry();
+  model.metres_per_unit = description.metres();
+  model.up = description.up;
+  model.unlit = request.unlit;
+  auto color = STRATA_TRY(make_texture(services, request, progress));
+  model.color = std::move(color);
+  progress.begin_stage(kEncoded, kIdsWritten);
+  if (request.features) {
+    const auto classes = STRATA_TRY(layer_classes(
+        services.store,
+        {request.room, *request.features, request.at, {}, request.role, request.language}));
+    auto features = STRATA_TRY(glb_features(classes, progress));
+    model.features = std::move(features);
+  }
+  progress.begin_stage(kIdsWritten, 1);
+  auto file = std::make_shared<TemporaryFile>(folder / (to_string(random_uuid()) + ".model"));
+  file->name = description.slug + ".glb";
+  file->media_type = "model/gltf-binary";
+  file->bytes = STRATA_TRY(mesh::write_glb(model, file->path, progress));
+  return file;
+}
+
+}  // namespace strata::app

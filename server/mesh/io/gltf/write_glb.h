@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/progress.h"
+#include "mesh/io/gltf/property_table.h"
+#include "mesh/surface/geometry.h"
+
+namespace strata::mesh {
+
+// An image in the atlas of a model, as a PNG or JPEG file.
+struct GlbImage {
+  std::string media_type;  // "image/png" or "image/jpeg"
+  std::vector<std::uint8_t> bytes;
+};
+
+// The features of a surface (EXT_mesh_features) and their properties.
+struct GlbFeatures {
+  std::string name;  // of the layer
+  // PNG. The id of the feature of each pixel is in the first `channels` channels, with the lowest 8
+  // bits in the first channel.
+  GlbImage ids;
+  int channels = 1;                         // 1…3
+  std::uint32_t count = 0;                  // at least 1; ids are below `count`
+  std::uint32_t none = 0;                   // the id of pixels without a feature; not below `count`
+  std::vector<FeatureProperty> properties;  // with `count` values each
+};
+
+// A model as a scene of one mesh.
+struct GlbModel {
+  std::string name, copyright;
+  std::shared_ptr<const Geometry> geometry;
+  double metres_per_unit = 1;
+  std::string up = "z";  // one of kUpDirections
+  GlbImage color;        // base color, in the atlas
+  // Show the base color without light (KHR_materials_unlit). Programs without this extension show
+  // a rough surface that is not metallic, like all programs without `unlit`.
+  bool unlit = false;
+  std::optional<GlbFeatures> features;
+};
+
+// Writes the model as a GLB file (glTF 2.0) and returns its size. Positions are those of
+// Geometry::vertices, in model space and in the unit of the model, as 32-bit floats. The matrix of
+// the node, in double precision, scales them to meters, rotates the model's up direction to +y and
+// its front to +z, and moves them to their place in the world. So large world coordinates lose no
+// precision. Textures use the coordinates of the atlas. The file is written in small pieces.
+//
+// Returns `too_large` for a file of more than 4 GiB, which GLB does not allow, `storage_full` if
+// the file could not be written, and `cancelled`.
+Result<std::uint64_t> write_glb(const GlbModel& model, const std::filesystem::path& file,
+                                Progress& progress);
+
+}  // namespace strata::mesh
