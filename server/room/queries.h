@@ -78,7 +78,13 @@ struct SeenLine {
   Camera camera;
   std::vector<glm::dvec2> path;  // window pixels, origin top left; at least 2
 };
-using ProfileLine = std::variant<PlacesInSteps, SeenLine>;
+struct UnrolledLine {  // on a sheet (Surface::sheet)
+  mesh::FitRequest fit;
+  std::optional<double> cut;     // in radians
+  std::vector<glm::dvec2> path;  // in model units on the sheet; at least 2
+  double step = 0;               // in model units, above 0
+};
+using ProfileLine = std::variant<PlacesInSteps, SeenLine, UnrolledLine>;
 
 // Questions to an open model. The first questions also build the search tree and the surface maps,
 // so call from a worker thread. Answers contain only values of the given layers. Returns an

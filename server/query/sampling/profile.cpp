@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "domain/scene/camera.h"
-#include "mesh/surface/search_tree.h"
+#include "mesh/rollout/rollout_rays.h"
+#include "query/sampling/surface_point.h"
 
 namespace strata::query {
 namespace {
@@ -62,6 +63,16 @@ Result<Profile> profile_seen(const mesh::SearchTree& tree, const glm::dvec3& ori
   const auto points = STRATA_TRY(steps_of(path, 1.0, "path"));
   return sample(
       points, [&](const glm::dvec2& at) { return pick(tree, origin, camera, at.x, at.y, layers); });
+}
+
+Result<Profile> profile_unrolled(const mesh::RolloutRays& rays, const glm::dvec3& origin,
+                                 std::span<const glm::dvec2> path, double step,
+                                 const std::vector<LayerView>& layers) {
+  const auto points = STRATA_TRY(steps_of(path, step, "step_mm"));
+  return sample(points, [&](const glm::dvec2& at) {
+    const auto found = rays.cast(at);
+    return found ? surface_point(found->hit, origin, layers) : off_the_model(layers);
+  });
 }
 
 }  // namespace strata::query

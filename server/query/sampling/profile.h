@@ -5,6 +5,10 @@
 
 #include "query/sampling/values.h"
 
+namespace strata::mesh {
+class RolloutRays;
+}
+
 namespace strata::query {
 
 constexpr std::size_t kMaxProfileSamples = 10'000;
@@ -33,5 +37,12 @@ Result<Profile> profile_near(const mesh::SearchTree& tree, const glm::dvec3& ori
 Result<Profile> profile_seen(const mesh::SearchTree& tree, const glm::dvec3& origin,
                              const Camera& camera, std::span<const glm::dvec2> path,
                              const std::vector<LayerView>& layers);
+
+// Samples the surface that an unrolled sheet shows along a line on it, in steps of at most `step`
+// (model units). `origin` is that of the geometry of the rays. More than kMaxProfileSamples are an
+// `invalid` error at `step_mm`.
+Result<Profile> profile_unrolled(const mesh::RolloutRays& rays, const glm::dvec3& origin,
+                                 std::span<const glm::dvec2> path, double step,
+                                 const std::vector<LayerView>& layers);
 
 }  // namespace strata::query

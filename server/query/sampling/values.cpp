@@ -12,9 +12,16 @@
 #include "mesh/surface/search_tree.h"
 #include "mesh/texels/texel_graph.h"
 #include "query/sampling/nearest_points.h"
+#include "query/sampling/surface_point.h"
 
 namespace strata::query {
 namespace {
+
+bool is_finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
 
 SurfacePoint surface_point(const mesh::SearchTree::Hit& hit, const glm::dvec3& origin,
                            const std::vector<LayerView>& layers) {
@@ -29,12 +36,6 @@ SurfacePoint off_the_model(const std::vector<LayerView>& layers) {
   for (const auto& layer : layers) point.values.push_back({layer.layer.slug, false, 0});
   return point;
 }
-
-bool is_finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-}  // namespace
 
 LayerValue value_at(const LayerView& view, glm::vec2 uv) {
   const auto bits = bits_at(view.snapshot.tiles, view.layer.resolution, uv);

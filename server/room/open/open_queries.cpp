@@ -6,6 +6,7 @@
 
 #include "domain/people/question.h"
 #include "mesh/parallel.h"
+#include "mesh/rollout/rollout_rays.h"
 #include "query/conditions/changed_texels.h"
 #include "query/conditions/texel_values.h"
 #include "query/sampling/nearest_points.h"
@@ -269,6 +270,17 @@ Result<query::Profile> OpenRoom::QueriesPart::profile(const ProfileLine& line,
   const auto tree = room_.surface_lookup_->tree();
   if (const auto* seen = std::get_if<SeenLine>(&line))
     return query::profile_seen(*tree, room_.geometry_->origin, seen->camera, seen->path, views);
+  if (const auto* unrolled = std::get_if<UnrolledLine>(&line)) {
+    auto fitted = room_.surface_lookup_->sheet(unrolled->fit, unrolled->cut, room_.model().up);
+    if (!fitted) {
+      Error problem = std::move(fitted.error());
+      problem.field = "unrolled." + problem.field;
+      return tl::unexpected(std::move(problem));
+    }
+    const mesh::RolloutRays rays(*tree, *room_.geometry_, (*fitted)->sheet);
+    return query::profile_unrolled(rays, room_.geometry_->origin, unrolled->path, unrolled->step,
+                                   views);
+  }
   const auto& steps = std::get<PlacesInSteps>(line);
   return query::profile_near(*tree, room_.geometry_->origin, steps.places, steps.step, views);
 }

@@ -243,3 +243,39 @@ def test_an_area_can_be_saved_as_a_selection(server):
         "POST", "/models/column/select", {"within": {"selection": saved["slug"]}}
     ).json()
     near(area_mm2(answer), 60 * 40)
+
+
+def test_a_line_on_the_sheet_is_on_the_wall(server):
+    path = [[-30, -10], [30, -10], [30, 10]]
+    body = {"unrolled": {"axis": AXIS, "radius": 40, "path": path}, "step_mm": 1, "layers": []}
+    profile = server.ok("POST", "/models/column/profile", body).json()
+    assert len(profile["samples"]) == 60 + 20 + 1
+    assert profile["length_mm"] == pytest.approx(80, rel=0.01)
+    for sample in profile["samples"]:
+        x, y, _ = sample["point"]["position"]
+        near(math.hypot(x, y), 40)
+    first, last = (profile["samples"][i]["point"]["position"] for i in (0, -1))
+    assert first[2] == pytest.approx(30, abs=0.01) and last[2] == pytest.approx(50, abs=0.01)
+    turn = math.atan2(last[1], last[0]) - math.atan2(first[1], first[0])
+    assert turn % (2 * math.pi) == pytest.approx(60 / 40, abs=0.01)
+    body["unrolled"]["path"] = [[0, 0], [0, 1000]]
+    assert not server.ok("POST", "/models/column/profile", body).json()["samples"][-1]["point"][
+        "hit"
+    ]
+
+
+@pytest.mark.parametrize(
+    "change, field",
+    [
+        ({"step_mm": 1e-4}, "step_mm"),
+        ({"unrolled": {"radius": 40, "path": [[0, 0], [1, 0]]}}, "unrolled.radius"),
+        ({"unrolled": {"axis": AXIS}}, "unrolled"),
+        ({"places": [[0, 0, 0], [1, 0, 0]]}, None),
+    ],
+)
+def test_wrong_lines_on_the_sheet_are_refused(server, change, field):
+    body = {"unrolled": {"axis": AXIS, "path": [[0, 0], [9, 0]]}, "step_mm": 1, **change}
+    answer = server.request("POST", "/models/column/profile", body)
+    assert answer.status == 422, answer
+    if field:
+        assert answer.json()["field"].startswith(field), answer

@@ -1,4 +1,5 @@
-// Painting on the unrolled picture of the pot: strokes, areas and the eraser, with mouse and finger.
+// Painting on the unrolled picture of the pot: strokes, areas and the eraser, with mouse and finger,
+// and lines and points of records.
 // The server saves each of them as one edit, and the picture shows it, also across the cut.
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -142,6 +143,51 @@ test("a stroke is one edit with the width on the object, and can be undone", asy
   await shown(ada, ([, middle]) => middle > 0, "the stroke again");
   await dialog(ada).getByRole("button", { name: words.model.undo, exact: true }).click();
   await shown(ada, ([, middle]) => middle === 0, "a picture without paint");
+});
+
+test("a line and a point belong to a record, and are on the surface", async () => {
+  const { project } = await server.json("GET", base);
+  const columns = [
+    { name: "Cracks", kind: "line" },
+    { name: "Places", kind: "point" },
+  ];
+  await server.json("POST", `/projects/${project}/tables`, { name: "Samples", columns });
+  await server.json("POST", "/tables/samples/records", { values: {} });
+  await server.json("POST", `${base}/layers`, {
+    name: "Samples",
+    kind: "database",
+    table: "samples",
+    type: "u16",
+    resolution: 2048,
+  });
+  const marks = async (column) =>
+    (await server.json("GET", "/tables/samples/records/1")).values[column] ?? [];
+  await dialog(ada).locator('select[name="layer"]').selectOption("Samples");
+  await radio(ada, words.tools.line).click();
+  await drag(ada, [0.4, 0.5], [0.5, 0.55]);
+  await wait_for(async () => (await marks("cracks")).length > 0, "the line");
+  await radio(ada, words.tools.point).click();
+  await drag(ada, [0.6, 0.5]);
+  await wait_for(async () => (await marks("places")).length === 1, "the point");
+  await dialog(ada).locator('figure[aria-busy="false"] img').waitFor();
+  await shot(ada, "line");
+  const places = [...(await marks("cracks")), ...(await marks("places"))].flatMap(
+    ({ coordinates }) => coordinates,
+  );
+  assert.ok(places.length >= 3);
+  for (const place of places) {
+    const { distance } = await server.json(
+      "GET",
+      `${base}/position?coords=POINT(${place.join(" ")})`,
+    );
+    assert.ok(distance < 0.01, `${distance} from the surface`);
+  }
+  const [[first], last] = [(await marks("cracks"))[0].coordinates, places.at(-2)];
+  assert.ok(Math.abs(first[2] - last[2]) > 1, "the line goes down");
+  await dialog(ada).getByRole("button", { name: words.model.undo, exact: true }).click();
+  await wait_for(async () => (await marks("places")).length === 0, "the undone point");
+  await dialog(ada).locator('select[name="layer"]').selectOption("Test");
+  await radio(ada, words.tools.brush).click();
 });
 
 test("a wrong width stays at its field", async () => {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "domain/people/question.h"
+#include "query/sampling/profile.h"
 #include "support/cut_shapes.h"
 
 namespace strata::query {
@@ -271,6 +272,34 @@ TEST(Unrolled, a_selection_ends_with_its_question) {
   const Question::Scope scope(question);
   question->end({ErrorCode::cancelled, "Canceled", "The request was canceled.", {}});
   EXPECT_THROW(select(surface, sheet, area), QuestionEnded);
+}
+
+TEST(UnrolledProfile, a_line_is_on_the_wall_where_the_sheet_shows_it) {
+  const auto surface = test::cut_surface(thick_wall(), kCuts[0], kResolution);
+  const RolloutSheet sheet = sheet_of(surface);
+  const mesh::SearchTree tree(std::make_shared<mesh::Geometry>(surface.geometry));
+  const mesh::RolloutRays rays(tree, surface.geometry, sheet);
+  // Half a turn at one height, and then up and past the rim.
+  const double radius = sheet.surface.radius;
+  const std::vector<glm::dvec2> path = {
+      {-radius * kPi / 2, 0}, {radius * kPi / 2, 0}, {radius * kPi / 2, 1000}};
+  const auto profile = profile_unrolled(rays, surface.geometry.origin, path, 0.5, {});
+  ASSERT_TRUE(profile);
+  const auto on_wall = static_cast<std::size_t>(std::ceil(radius * kPi / 0.5));
+  for (std::size_t i = 0; i <= on_wall; ++i) {
+    const auto& point = profile->samples[i].point;
+    ASSERT_TRUE(point.hit);
+    const glm::dvec2 from_axis(point.position.x - 100, point.position.y + 20);
+    EXPECT_NEAR(glm::length(from_axis), 25, 0.01) << "the outside";
+    const glm::dvec2 drawn =
+        path[0] + (path[1] - path[0]) * (static_cast<double>(i) / static_cast<double>(on_wall));
+    const auto place = sheet.surface.place_of(point.position);
+    EXPECT_LT(glm::distance(sheet.on_sheet({place.angle, place.slant}), drawn), 0.01);
+  }
+  EXPECT_NEAR(profile->samples[on_wall].along, 25 * kPi, 0.05);
+  EXPECT_FALSE(profile->samples.back().point.hit) << "above the rim";
+  EXPECT_EQ(profile_unrolled(rays, surface.geometry.origin, path, 1e-4, {}).error().field,
+            "step_mm");
 }
 
 }  // namespace

@@ -3725,7 +3725,25 @@ export interface SelectResponse {
   edit?: EditResult;
 }
 
-/** Request for a profile of the surface. The line goes through points in space, or is drawn in the window of a camera. In space, each step results in a sample at the nearest point on the surface. In a window, each pixel of the line results in a sample at the visible point of the surface. */
+/** Line on an unrolled sheet. The sheet is the same as that of a rollout with the same members. */
+export interface UnrolledLine {
+  /** Required for models without a unique axis, such as spheres. */
+  axis?: RolloutAxis;
+  /** Default: a cylinder, or a cone if it fits clearly better. */
+  shape?: RolloutShape;
+  /** Radius at `axis.point`, in units of the model. Only together with `axis`. */
+  radius?: number;
+  /** Angle between the axis and the surface of a cone in degrees, positive if the radius grows along the axis. Only together with `radius`. */
+  half_angle?: number;
+  /** Default: the side with the larger area. */
+  side?: RolloutSide;
+  /** Angle of the cut in degrees, counterclockwise from `zero` of the sheet. Default: the middle of the largest gap of the model, or 180 (the back) if there is no gap. */
+  cut?: number;
+  /** In millimeters on the sheet: x to the right, 0 in its middle, y up. */
+  path: Point2[];
+}
+
+/** Request for a profile of the surface. The line goes through points in space, is drawn in the window of a camera, or is drawn on an unrolled sheet. In space, each step results in a sample at the nearest point on the surface. In a window, each pixel of the line results in a sample at the visible point of the surface. On a sheet, each step results in a sample at the point of the surface that the sheet shows. */
 export interface ProfileRequest {
   places?: Point3[];
   /** In millimeters on the object. */
@@ -3733,6 +3751,7 @@ export interface ProfileRequest {
   camera?: Camera;
   /** Pixels in the window of the camera. */
   path?: Point2[];
+  unrolled?: UnrolledLine;
   /** Default: all layers. */
   layers?: LayerRef[];
   at?: At;

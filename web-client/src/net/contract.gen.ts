@@ -3631,6 +3631,8 @@ export interface components {
         Unit: wire.Unit;
         /** Area on an unrolled sheet */
         Unrolled: wire.Unrolled;
+        /** Line on an unrolled sheet */
+        UnrolledLine: wire.UnrolledLine;
         /**
          * UUID
          * Format: uuid

@@ -148,7 +148,7 @@ export function makeTools(session: ModelSession, host: ToolHost): ToolManager {
     }),
     pick: new PickTool((sample) => session.pointer.take(sample)),
     line: new LineTool(lineHost),
-    point: new PointTool((sample) => void session.marks.setPoint(sample)),
+    point: new PointTool(({ x, y }) => void session.marks.setPoint([x, y])),
     measure: new MeasureTool(measureHost),
     face: new FaceTool(faceHost),
     part: new PartTool(partHost),

@@ -4577,11 +4577,34 @@ nlohmann::json to_json(const SelectResponse& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, UnrolledLine& value) {
+  read_optional_member(json, "axis", value.axis);
+  read_optional_member(json, "shape", value.shape);
+  read_optional_member(json, "radius", value.radius);
+  read_optional_member(json, "half_angle", value.half_angle);
+  read_optional_member(json, "side", value.side);
+  read_optional_member(json, "cut", value.cut);
+  read_member(json, "path", value.path);
+}
+
+nlohmann::json to_json(const UnrolledLine& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "axis", value.axis);
+  write_optional_member(json, "shape", value.shape);
+  write_optional_member(json, "radius", value.radius);
+  write_optional_member(json, "half_angle", value.half_angle);
+  write_optional_member(json, "side", value.side);
+  write_optional_member(json, "cut", value.cut);
+  write_member(json, "path", value.path);
+  return json;
+}
+
 void read(const nlohmann::json& json, ProfileRequest& value) {
   read_optional_member(json, "places", value.places);
   read_optional_member(json, "step_mm", value.step_mm);
   read_optional_member(json, "camera", value.camera);
   read_optional_member(json, "path", value.path);
+  read_optional_member(json, "unrolled", value.unrolled);
   read_optional_member(json, "layers", value.layers);
   read_optional_member(json, "at", value.at);
 }
@@ -4592,6 +4615,7 @@ nlohmann::json to_json(const ProfileRequest& value) {
   write_optional_member(json, "step_mm", value.step_mm);
   write_optional_member(json, "camera", value.camera);
   write_optional_member(json, "path", value.path);
+  write_optional_member(json, "unrolled", value.unrolled);
   write_optional_member(json, "layers", value.layers);
   write_optional_member(json, "at", value.at);
   return json;

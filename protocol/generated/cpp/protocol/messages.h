@@ -430,9 +430,10 @@ enum class Schema {
   SheetPoint,
   SheetOutline,
   SheetStroke,
+  UnrolledLine,
   Unrolled,
 };
-constexpr int kSchemaCount = 406;
+constexpr int kSchemaCount = 407;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -3608,12 +3609,35 @@ nlohmann::json to_json(const SelectResponse& value);
 template <>
 inline constexpr Schema kSchemaOf<SelectResponse> = Schema::SelectResponse;
 
-// Request for a profile of the surface. The line goes through points in space, or is drawn in the window of a camera. In space, each step results in a sample at the nearest point on the surface. In a window, each pixel of the line results in a sample at the visible point of the surface.
+// Line on an unrolled sheet. The sheet is the same as that of a rollout with the same members.
+struct UnrolledLine {
+  std::optional<RolloutAxis> axis;  // Required for models without a unique axis, such as spheres.
+  std::optional<RolloutShape> shape;  // Default: a cylinder, or a cone if it fits clearly better.
+  // Radius at `axis.point`, in units of the model. Only together with `axis`.
+  std::optional<double> radius;
+  // Angle between the axis and the surface of a cone in degrees, positive if the radius grows along
+  // the axis. Only together with `radius`.
+  std::optional<double> half_angle;
+  std::optional<RolloutSide> side;  // Default: the side with the larger area.
+  // Angle of the cut in degrees, counterclockwise from `zero` of the sheet. Default: the middle of
+  // the largest gap of the model, or 180 (the back) if there is no gap.
+  std::optional<double> cut;
+  // In millimeters on the sheet: x to the right, 0 in its middle, y up.
+  std::vector<glm::dvec2> path;
+  bool operator==(const UnrolledLine&) const = default;
+};
+void read(const nlohmann::json& json, UnrolledLine& value);
+nlohmann::json to_json(const UnrolledLine& value);
+template <>
+inline constexpr Schema kSchemaOf<UnrolledLine> = Schema::UnrolledLine;
+
+// Request for a profile of the surface. The line goes through points in space, is drawn in the window of a camera, or is drawn on an unrolled sheet. In space, each step results in a sample at the nearest point on the surface. In a window, each pixel of the line results in a sample at the visible point of the surface. On a sheet, each step results in a sample at the point of the surface that the sheet shows.
 struct ProfileRequest {
   std::optional<std::vector<glm::dvec3>> places;
   std::optional<double> step_mm;  // In millimeters on the object.
   std::optional<strata::Camera> camera;
   std::optional<std::vector<glm::dvec2>> path;  // Pixels in the window of the camera.
+  std::optional<UnrolledLine> unrolled;
   std::optional<std::vector<LayerRef>> layers;  // Default: all layers.
   std::optional<At> at;
   bool operator==(const ProfileRequest&) const = default;

@@ -1,12 +1,15 @@
 #include <cmath>
+#include <glm/trigonometric.hpp>
 
 #include "domain/scene/model.h"
 #include "domain/scene/units.h"
 #include "mesh/analysis/section_area.h"
 #include "net/api/addressed.h"
+#include "net/api/models/rollout_fit.h"
 #include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
+#include "net/serialization/at_field.h"
 #include "net/serialization/point_serialization.h"
 #include "net/serialization/point_text.h"
 #include "net/serialization/sheet_response.h"
@@ -96,6 +99,17 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
   return response;
 }
 
+Result<room::UnrolledLine> unrolled_line(const protocol::UnrolledLine& body, double step_mm,
+                                         Unit unit) {
+  auto fit = read_fit({body.axis, body.shape, body.radius, body.half_angle, body.side, body.cut});
+  if (!fit) return at_field(fit.error(), "unrolled." + fit.error().field);
+  room::UnrolledLine line{.fit = std::move(*fit)};
+  if (body.cut) line.cut = glm::radians(*body.cut);
+  for (const glm::dvec2& point : body.path) line.path.push_back(in_model_units(1, unit) * point);
+  line.step = in_model_units(step_mm, unit);
+  return line;
+}
+
 Result<Response> profile(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::ProfileRequest>(request));
   const auto room = open_room(context, request);
@@ -105,6 +119,8 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
   room::ProfileLine line;
   if (body.places)
     line = room::PlacesInSteps{*body.places, in_model_units(*body.step_mm, unit)};
+  else if (body.unrolled)
+    line = STRATA_TRY(unrolled_line(*body.unrolled, *body.step_mm, unit));
   else
     line = room::SeenLine{*body.camera, *body.path};
   const auto at = STRATA_TRY(find_sequence(context, **room, body.at));

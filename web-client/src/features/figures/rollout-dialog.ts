@@ -9,6 +9,7 @@ import { formatCount, formatFixed } from "../../core/locale";
 import type { RolloutRequest, RolloutSheet } from "../../core/protocol.gen";
 import { ApiError } from "../../net/api-error";
 import { followSession } from "../../session/follow-session";
+import { sightOnSheet } from "../../session/mark-sight";
 import type { ModelSession } from "../../session/model-session";
 import "../../session/picture/picture-canvas";
 import type { StrataPictureCanvas } from "../../session/picture/picture-canvas";
@@ -28,7 +29,7 @@ import {
   wrongField,
   type RolloutInput,
 } from "./rollout-request";
-import { isSameSheet, sheetOrigin, withinSheet } from "./rollout-sheet";
+import { isSameSheet, sheetOrigin, fixedSheet, withinSheet } from "./rollout-sheet";
 
 const words = texts.rollouts;
 const kWaitMs = 350; // delay after the last key press
@@ -52,14 +53,13 @@ export class StrataRolloutDialog extends LitElement {
     session: () => this.session,
     painting: () => this._painting,
     unit: "mm",
-    marks: false,
     left: () => this._canvas?.discard(),
     zoomed: () => void this._painting.redraw(),
   });
 
   constructor() {
     super();
-    followSession(this, "painting", "layers", "tables", "views");
+    followSession(this, "painting", "layers", "marks", "tables", "views");
   }
 
   static override styles = [
@@ -156,11 +156,20 @@ export class StrataRolloutDialog extends LitElement {
   private paint(sheet: RolloutSheet, drawn: DrawnPart): void {
     const { api, modelId: model } = this.session;
     const { part } = drawn;
-    if (!isPaint(part)) return; // its tools draw no lines or points
-    this._painting.paint(drawn, async ({ layer, paint }) => {
-      const body = { within: withinSheet(sheet, part), into: { layer: layer.id, ...paint } };
-      return (await api.json("POST /models/{model}/select", { path: { model }, body })).edit;
-    });
+    if (isPaint(part)) {
+      this._painting.paint(drawn, async ({ layer, paint }) => {
+        const body = { within: withinSheet(sheet, part), into: { layer: layer.id, ...paint } };
+        return (await api.json("POST /models/{model}/select", { path: { model }, body })).edit;
+      });
+      return;
+    }
+    const { marks } = this.session;
+    const host = { api, model: this.session.model! };
+    const mmPerPixel = this._canvas?.unitPerCssPixel() ?? sheet.mm_per_pixel;
+    const sight = sightOnSheet(host, fixedSheet(sheet), mmPerPixel);
+    this._painting.mark(drawn, () =>
+      "line" in part ? marks.finishLine(part.line, sight) : marks.setPoint(part.point, sight),
+    );
   }
 
   private fitted(sheet: RolloutSheet): string {

@@ -8,6 +8,7 @@ import type { EditResult, Photograph } from "../../core/protocol.gen";
 import { mayDownload } from "../../core/types";
 import { ApiError } from "../../net/api-error";
 import { followSession } from "../../session/follow-session";
+import { sightThrough } from "../../session/mark-sight";
 import type { ModelSession } from "../../session/model-session";
 import "../../session/picture/picture-canvas";
 import type { StrataPictureCanvas } from "../../session/picture/picture-canvas";
@@ -45,7 +46,6 @@ export class StrataPhotographDialog extends LitElement {
     session: () => this.session,
     painting: () => this._painting,
     unit: "px",
-    marks: true,
     left: () => this._canvas?.discard(),
     zoomed: () => void this.readPicture(),
   });
@@ -182,12 +182,13 @@ export class StrataPhotographDialog extends LitElement {
       );
       return;
     }
-    const sight = { camera: window, scale: this._canvas?.unitPerCssPixel() ?? 1 };
-    this._painting.mark(drawn, () => {
-      if ("line" in part) return marks.finishLine(part.line.map(toPixel), sight);
-      const [x, y] = toPixel(part.point);
-      return marks.setPoint({ x, y }, sight);
-    });
+    const scale = this._canvas?.unitPerCssPixel() ?? 1;
+    const sight = sightThrough({ api, model: this.session.model! }, window, scale);
+    this._painting.mark(drawn, () =>
+      "line" in part
+        ? marks.finishLine(part.line.map(toPixel), sight)
+        : marks.setPoint(toPixel(part.point), sight),
+    );
   }
 
   /** Reads the photograph in the size for the zoom. */

@@ -4,22 +4,15 @@
 import { ApiError } from "../../net/api-error";
 import type { Api } from "../../net/api";
 import { readRecord, changeRecord } from "../../net/records";
-import { pixelSizeThrough, type CameraMessage } from "../../math/camera";
 import type { Point } from "../../net/stroke";
-import type { PointerSample } from "../../ui/input";
 import { markColumns, markLength, marksOf, type MarkKind } from "../../domain/marks";
 import { formatLength, metresPer } from "../../domain/measure";
 import type { Column, MarkPlace, TableRecord } from "../../core/protocol.gen";
-import {
-  lengthSeen,
-  lineOnSurface,
-  stepsAlong,
-  type Measures,
-  type Step,
-} from "../../domain/surface-line";
+import { lengthSeen, lineOnSurface, type Step } from "../../domain/surface-line";
 import type { Model } from "../../core/types";
 import type { Outline } from "../../tools/tool";
 import { LineMeasure } from "../../session/line-measure";
+import { sightThrough, type MarkSight } from "../../session/mark-sight";
 import { notices } from "../../ui/notices";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
@@ -34,12 +27,6 @@ export interface MarkDrawingHost {
   changed(): void;
 }
 
-/** How the user sees the surface: the camera, and the number of its pixels per screen pixel. */
-export interface Sight {
-  camera: CameraMessage;
-  scale: number;
-}
-
 /** The record and the column that receive the drawing. */
 interface Target {
   model: Model;
@@ -50,11 +37,6 @@ interface Target {
 
 const kMostTries = 5; // for simultaneous changes to the record by other users
 const words = texts.marks;
-
-const measuresOf = ({ camera, scale }: Sight): Measures => ({
-  pixelAt: pixelSizeThrough(camera),
-  scale,
-});
 
 const metresOf = (lines: readonly MarkPlace[][], { unit }: Model): number =>
   lines.reduce((sum, coordinates) => sum + markLength({ coordinates }), 0) * metresPer(unit);
@@ -71,9 +53,9 @@ export class MarkDrawing {
     private readonly _host: MarkDrawingHost,
   ) {
     this._measure = new LineMeasure({
-      lookAlong: async (path) => this.lookAlong(_host.model()!, _host.view.camera.message(), path),
+      lookAlong: async (path) => this.sight(_host.model()!).along(path),
       metresAlong: (steps) =>
-        lengthSeen(steps, measuresOf(this.sight())) * metresPer(_host.model()!.unit),
+        lengthSeen(steps, this.sight(_host.model()!).measures) * metresPer(_host.model()!.unit),
       changed: () => _host.changed(),
     });
   }
@@ -112,14 +94,14 @@ export class MarkDrawing {
     this._measure.follow(outline);
   }
 
-  /** The path is in the window of the camera. Resolves when the line is saved or refused. */
-  finishLine(path: readonly Point[], sight = this.sight()): Promise<void> {
+  /** Resolves when the line is saved or refused. `seen` is the 3D view by default. */
+  finishLine(path: readonly Point[], seen?: MarkSight): Promise<void> {
     const target = this.target("line");
     if (!target) return Promise.resolve();
-    const measures = measuresOf(sight);
+    const sight = seen ?? this.sight(target.model);
     return this.queue(async () => {
-      const steps = await this.lookAlong(target.model, sight.camera, path);
-      const lines = await lineOnSurface(steps, measures, (from, to, step) =>
+      const steps = await sight.along(path);
+      const lines = await lineOnSurface(steps, sight.measures, (from, to, step) =>
         this.nearestAlong(target.model, from, to, step),
       );
       const cut = lines.length > 1 ? words.line_cut(lines.length) : "";
@@ -132,15 +114,13 @@ export class MarkDrawing {
     });
   }
 
-  setPoint({ x, y }: Pick<PointerSample, "x" | "y">, { camera } = this.sight()): Promise<void> {
+  setPoint(at: Point, seen?: MarkSight): Promise<void> {
     const target = this.target("point");
     if (!target) return Promise.resolve();
+    const sight = seen ?? this.sight(target.model);
     return this.queue(async () => {
-      const { hit, position } = await this._api.json("POST /models/{model}/pick", {
-        path: { model: `${target.model.id}` },
-        body: { camera, x, y },
-      });
-      await this.add(target, hit && position ? [[position]] : [], words.point_set);
+      const place = await sight.at(at);
+      await this.add(target, place ? [[place]] : [], words.point_set);
     });
   }
 
@@ -172,17 +152,6 @@ export class MarkDrawing {
       : { model, table: layer.table, key, column };
   }
 
-  private async lookAlong(
-    { id }: Model,
-    seenBy: CameraMessage,
-    path: readonly Point[],
-  ): Promise<Step[]> {
-    const { samples } = await this._api.json("POST /models/{model}/profile", {
-      path: { model: `${id}` },
-      body: { camera: seenBy, path, layers: [] },
-    });
-    return stepsAlong(path, samples);
-  }
   private async nearestAlong(
     { id, unit }: Model,
     from: MarkPlace,
@@ -199,12 +168,9 @@ export class MarkDrawing {
     });
     return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
-  /** How the user sees the 3D view. */
-  private sight(): Sight {
-    return {
-      camera: this._host.view.camera.message(),
-      scale: Math.max(1, globalThis.devicePixelRatio || 1),
-    };
+  private sight(model: Model): MarkSight {
+    const scale = Math.max(1, globalThis.devicePixelRatio || 1);
+    return sightThrough({ api: this._api, model }, this._host.view.camera.message(), scale);
   }
 
   private queue(work: () => Promise<void>): Promise<void> {

@@ -1,5 +1,5 @@
-// The tools of a dialog in which the user paints on a picture: move, brush and area, in some dialogs
-// also line and point, the zoom, the width of the brush, and what the tools paint or draw.
+// The tools of a dialog in which the user paints and draws on a picture: move, brush, area, line and
+// point, the zoom, the width of the brush, and what the tools paint or draw.
 
 import { css, html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
 import { readNumber, typedNumber } from "../../core/locale";
@@ -32,8 +32,6 @@ export interface PictureToolsHost {
   painting(): PicturePainting;
   /** The unit of the brush's width. */
   readonly unit: "mm" | "px";
-  /** Whether lines and points can be drawn on the picture, too. */
-  readonly marks: boolean;
   /** Another tool was chosen, so an unfinished part is discarded. */
   left(): void;
   /** The picture must be drawn in another size. */
@@ -180,7 +178,6 @@ export class PictureTools {
 
   private get tools(): readonly PictureTool[] {
     const { marks } = this._host.session();
-    if (!this._host.marks) return kPaintTools;
     return [...kPaintTools, ...kMarkKinds.filter((kind) => marks.column(kind) !== null)];
   }
 

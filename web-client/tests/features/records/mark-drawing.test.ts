@@ -4,7 +4,8 @@ import { MarkDrawing, type MarkDrawingHost } from "../../../src/features/records
 import { notices, type Notice } from "../../../src/ui/notices";
 import { texts } from "../../../src/texts";
 import { Api } from "../../../src/net/api";
-import type { Mark } from "../../../src/core/protocol.gen";
+import type { MarkSight } from "../../../src/session/mark-sight";
+import type { Mark, MarkPlace } from "../../../src/core/protocol.gen";
 
 const column = (id: number, slug: string, kind: string): object => ({
   id,
@@ -34,7 +35,6 @@ const isTold = (title: string): Promise<void> =>
   comes(() => expect(shown.at(-1)?.title).toBe(title));
 
 let stored: { key: number; version: number; values: Record<string, unknown> };
-let seenBy: unknown[]; // cameras of the requests
 let told: string[]; // requests that the server received
 let beforeChange: () => void;
 let newest: number; // the newest entry of the table's journal
@@ -49,15 +49,14 @@ const answer = (body: unknown, status = 200): Response =>
 
 beforeEach(() => {
   stored = { key: 7, version: 1, values: {} };
-  [told, seenBy, undone, newest] = [[], [], [], 2];
+  [told, undone, newest] = [[], [], 2];
   beforeChange = () => {};
   const api = new Api((path, init) => {
     const what = `${init!.method} ${String(path).replace("/api/v1", "")}`;
     told.push(what);
     const body = init!.body
-      ? (JSON.parse(String(init!.body)) as { version: number; values: object; camera?: unknown })
+      ? (JSON.parse(String(init!.body)) as { version: number; values: object })
       : null;
-    if (body?.camera) seenBy.push(body.camera);
     if (what.endsWith("/profile")) {
       const samples = [
         [0, 0, 0],
@@ -139,24 +138,42 @@ describe("what is drawn on the surface", () => {
     });
   });
 
-  it("is seen through the camera that drew it", async () => {
-    const camera = { ...flatView, width: 7 };
-    await marks.setPoint({ x: 1, y: 1 }, { camera, scale: 1 });
+  it("can be drawn on a picture that shows the surface", async () => {
+    const at = async (place: MarkPlace): Promise<MarkPlace> => place;
+    const sight: MarkSight = {
+      measures: { pixelAt: () => 1, scale: 1 },
+      along: async (path) =>
+        path.map(([x, y]) => ({ at: [x, y], place: [x, y, 5], normal: [0, 0, 1] })),
+      at: ([x, y]) => at([x, y, 5]),
+    };
+    await marks.setPoint([1, 2], sight);
     await marks.finishLine(
       [
         [0, 0],
-        [31, 31],
+        [1, 0],
       ],
-      { camera, scale: 1 },
+      sight,
     );
-    expect(seenBy).toEqual([camera, camera]);
+    expect(stored.values).toEqual({
+      samples: [{ model: 9, coordinates: [[1, 2, 5]] }],
+      cracks: [
+        {
+          model: 9,
+          coordinates: [
+            [0, 0, 5],
+            [1, 0, 5],
+          ],
+        },
+      ],
+    });
+    expect(told.filter((what) => /profile|pick/.test(what))).toEqual([]);
   });
 
   it("stays with what others add to the record meanwhile, and with what was drawn just before", async () => {
     const other: Mark = { model: 2, coordinates: [[5, 5, 5]] };
     beforeChange = () => (stored = { ...stored, version: 40, values: { samples: [other] } });
-    void marks.setPoint({ x: 1, y: 1 });
-    void marks.setPoint({ x: 2, y: 2 });
+    void marks.setPoint([1, 1]);
+    void marks.setPoint([2, 2]);
     const mine = { model: 9, coordinates: [[1, 2, 3]] };
     await comes(() => expect(stored.values["samples"]).toEqual([other, mine, mine]));
     await isTold(texts.marks.point_set("North"));
@@ -165,7 +182,7 @@ describe("what is drawn on the surface", () => {
 
   it("is taken back by its notice, unless something came after it", async () => {
     const act = (): void => (shown[0]!.link as { act: () => void }).act();
-    void marks.setPoint({ x: 1, y: 1 });
+    void marks.setPoint([1, 1]);
     await isTold(texts.marks.point_set("North"));
     act();
     await comes(() => expect(undone).toEqual([3]));
@@ -180,7 +197,7 @@ describe("what is drawn on the surface", () => {
     expect(marks.beginLine()).toBe(false);
     host.painting.brush.valueFor = () => 7;
     host.tables.find = () => null;
-    void marks.setPoint({ x: 1, y: 1 });
+    void marks.setPoint([1, 1]);
     expect([told, host.painting.stroking]).toEqual([[], false]);
     expect(shown.map(({ title }) => title)).toEqual([
       texts.brush.no_record(8),
