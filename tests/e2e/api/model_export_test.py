@@ -344,7 +344,7 @@ def test_wrong_requests_are_refused(server):
     server.ok("POST", M + "/layers", {"name": "Empty", "type": "u8", "resolution": 2048})
     for wish, status, field in (
         ({"layers": ["nothing"]}, 404, "layers"),
-        ({"features": "nothing"}, 404, "features"),
+        ({"features": "nothing"}, 422, "features"),
         ({"features": "empty", "texture_size": 512}, 422, "features"),
         ({"texture_size": 100}, 422, "texture_size"),
         ({"texture_format": "webp"}, 422, "texture_format"),

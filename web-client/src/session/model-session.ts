@@ -27,6 +27,7 @@ import type { Painting } from "../features/painting/painting";
 import type { SavedSelections } from "../features/painting/saved-selections";
 import type { Selection } from "../features/painting/selection";
 import type { Strokes } from "../features/painting/strokes";
+import type { ModelExports } from "../features/exports/exports";
 import type { Photographs } from "../features/photographs/photographs";
 import type { Past } from "../features/past/past";
 import type { Visits } from "../features/past/visits";
@@ -123,6 +124,7 @@ export interface ModelSession {
   readonly files: FileJobs;
   readonly figures: Figures;
   readonly reports: Reports;
+  readonly exports: ModelExports;
   readonly face: FacePick;
   readonly tools: ToolManager;
   readonly api: Api;

@@ -45,7 +45,10 @@ export interface SelectionRequest {
   dialog: "selections" | "save-selection" | "selection-statistics";
 }
 
-/** The dialog that unrolls the model, the dialog for a condition report, or the photographs. */
+/**
+ * The dialog that unrolls the model, the dialogs for a condition report and for a 3D model, or the
+ * photographs.
+ */
 export interface ModelDialogRequest {
-  dialog: "rollout" | "report" | "photographs";
+  dialog: "rollout" | "report" | "export" | "photographs";
 }

@@ -3,7 +3,7 @@
 import { labelOf } from "../domain/cells";
 import { canBeColored } from "../domain/palette";
 import { called } from "../domain/people";
-import { mayAdminister } from "../core/types";
+import { mayAdminister, mayDownload } from "../core/types";
 import { kCuts, kLightModes } from "../features/appearance/appearance";
 import { texts } from "../texts";
 import type { IconName } from "../ui/icons";
@@ -232,6 +232,9 @@ function ofModel(host: PageHost): Command[] {
       dialog: "photographs",
     }),
     opening(host, group, "document", texts.condition_report.open, { dialog: "report" }),
+    ...(mayDownload(session.role, model)
+      ? [opening(host, group, "cube", texts.model_export.open, { dialog: "export" })]
+      : []),
     ...(session.canCurate
       ? [opening(host, group, "measure", texts.model.correct_size, { dialog: "scale" })]
       : []),

@@ -151,6 +151,8 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
       ></strata-photograph-dialog>`;
     case "report":
       return html`<strata-report-dialog .session=${session} @closed=${closed}></strata-report-dialog>`;
+    case "export":
+      return html`<strata-export-dialog .session=${session} @closed=${closed}></strata-export-dialog>`;
     case "kiosks":
       return session.model
         ? html`<strata-kiosks-dialog

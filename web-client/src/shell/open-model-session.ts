@@ -5,8 +5,8 @@
 // images, the light and the section. `pointer` contains the values under the pointer, `painting`
 // the brush and the edits. `together` contains the participants and the followed view, `cursors`
 // their pointers. `views` are the saved views, `surveys` the other surveys of the object,
-// `tours` the tours, `measuring` the measurement, `figures` the figures to scale, and `reports` the
-// condition reports. `face` is the face to pick, and `past` the earlier states.
+// `tours` the tours, `measuring` the measurement, `figures` the figures to scale, `reports` the
+// condition reports, and `exports` the 3D models for other programs. `face` is the face to pick, and `past` the earlier states.
 // Elements subscribe to the parts' state and render it. They change it only through methods. The
 // file is long because it is the only one that connects the parts.
 
@@ -63,6 +63,7 @@ import { PointerWatch } from "../session/pointer-watch";
 import { RecordEditors } from "../session/record-editors";
 import { RecordHover } from "../features/records/record-hover";
 import { RecordSight } from "../features/records/record-sight";
+import { ModelExports } from "../features/exports/exports";
 import { Reports } from "../features/reports/reports";
 import { Reviews } from "../features/review/reviews";
 import { forget, remember } from "../session/sessions";
@@ -126,6 +127,7 @@ export class OpenModelSession implements ModelSession {
   readonly files: FileJobs;
   readonly figures: Figures;
   readonly reports: Reports;
+  readonly exports: ModelExports;
   readonly face: FacePick;
   readonly tools: ToolManager;
   selection: Selection | null = null;
@@ -384,6 +386,7 @@ export class OpenModelSession implements ModelSession {
     this.files = new FileJobs(api, this.jobs);
     this.figures = new Figures(api, modelId, this.files);
     this.reports = new Reports(api, modelId, this.files);
+    this.exports = new ModelExports(api, modelId, this.files);
     this.face = new FacePick(api, {
       view: this.view,
       model: () => this.model,

@@ -1745,6 +1745,11 @@ export const texts = {
   },
 
   condition_report: { title: "Zustandsbericht", open: "Zustandsbericht …" },
+  model_export: {
+    part: "3D-Modell",
+    title: "3D-Modell exportieren",
+    open: "3D-Modell exportieren …",
+  },
 
   tours: {
     title: "Führungen",

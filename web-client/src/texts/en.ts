@@ -1700,6 +1700,7 @@ export const texts = {
   },
 
   condition_report: { title: "Condition report", open: "Condition report…" },
+  model_export: { part: "3D model", title: "Export 3D model", open: "Export 3D model…" },
 
   tours: {
     title: "Tours",

@@ -1735,6 +1735,11 @@ export const texts = {
     save: "Guardar archivo",
   },
 
+  model_export: {
+    part: "Modelo 3D",
+    title: "Exportar modelo 3D",
+    open: "Exportar modelo 3D…",
+  },
   condition_report: {
     title: "Informe de estado de conservación",
     open: "Informe de estado de conservación…",

@@ -3,6 +3,7 @@
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement } from "lit/decorators.js";
+import { mayDownload } from "../../core/types";
 import { SidePanel, sidePanelStyles } from "../../session/side-panel";
 import { icon } from "../../ui/icons";
 import "./look-list";
@@ -79,6 +80,7 @@ export class StrataViewPanel extends SidePanel {
   }
 
   private figure(): TemplateResult {
+    const { model, role } = this.session;
     const open = (): boolean =>
       this.dispatchEvent(
         new CustomEvent<ViewRequest>("request", { detail: { dialog: "figure", view: null } }),
@@ -97,6 +99,14 @@ export class StrataViewPanel extends SidePanel {
     <div class="part">
       <h3>${texts.condition_report.title}</h3>
       <div><button @click=${() => show("report")}>${icon("document")}${texts.condition_report.open}</button></div>
-    </div>`;
+    </div>
+    ${
+      model && mayDownload(role, model)
+        ? html`<div class="part">
+            <h3>${texts.model_export.part}</h3>
+            <div><button @click=${() => show("export")}>${icon("cube")}${texts.model_export.open}</button></div>
+          </div>`
+        : nothing
+    }`;
   }
 }

@@ -1,0 +1,222 @@
+// <strata-export-dialog>: sets the options of a 3D model for other programs, and starts the job
+// that makes the file.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { pageLanguage, pageLocale } from "../../core/locale";
+import type { Layer, ProblemBody } from "../../core/types";
+import { labelOf } from "../../domain/cells";
+import {
+  exportRequest,
+  kTextureFormats,
+  kTextureSizes,
+  kUsualExport,
+  type ExportInput,
+} from "../../domain/exports";
+import { AwaitedFile, awaitedFileStyles } from "../../session/awaited-file";
+import { followSession } from "../../session/follow-session";
+import type { ModelSession } from "../../session/model-session";
+import "../../ui/dialog";
+import { radioGroup } from "../../ui/radio-group";
+import { formatChoiceStyles, sharedStyles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+const words = texts.export_dialog;
+
+@customElement("strata-export-dialog")
+export class StrataExportDialog extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private _input: ExportInput = kUsualExport;
+  @state() private _problem = "";
+  private readonly _file = new AwaitedFile(this, (problem) => this.refuse(problem));
+
+  constructor() {
+    super();
+    followSession(this, "jobs", "layers");
+  }
+
+  static override styles = [
+    sharedStyles,
+    formatChoiceStyles,
+    awaitedFileStyles,
+    css`
+      .editor,
+      .group {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        align-content: start;
+      }
+      .editor {
+        gap: var(--space-4);
+      }
+      .group,
+      .layers {
+        gap: var(--space-1);
+      }
+      .layers {
+        display: grid;
+      }
+      .layers label {
+        min-width: 0;
+        overflow-wrap: anywhere;
+      }
+      button.link {
+        justify-self: start;
+      }
+      @media (pointer: coarse) {
+        .layers label {
+          min-height: var(--control-touch);
+        }
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this._input = this.session.exports.draft;
+  }
+
+  override render(): TemplateResult {
+    return html`<strata-dialog
+      wide
+      heading=${texts.model_export.title}
+      way_out=${this._file.running ? "" : texts.close}
+      @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
+    >
+      <form id="export" class="editor" novalidate @submit=${this.onSubmit}>
+        <p>${words.lead}</p>
+        ${this.layers()} ${this.features()} ${this.size()} ${this.format()} ${this.light()}
+      </form>
+      ${this._file.footer({
+        form: "export",
+        make: words.make,
+        making: words.making,
+        cancel: words.cancel,
+        saved: words.saved,
+        problem: this._problem,
+      })}
+    </strata-dialog>`;
+  }
+
+  private layers(): TemplateResult {
+    const all = [...this.session.layers.all].reverse(); // in the order of the layer list
+    const chosen = this.chosenLayers;
+    return html`<div class="group" role="group" aria-labelledby="layers">
+      <span class="caption" id="layers">${words.layers}</span>
+      <p class="hint">${all.length > 0 ? words.layers_hint : words.no_layers}</p>
+      <div class="layers">
+        ${all.map(
+          (layer) =>
+            html`<label class="check">
+              <input type="checkbox" name="layer_${layer.id}" .checked=${chosen.includes(layer.id)} @change=${(event: Event) => this.chooseLayer(layer, (event.target as HTMLInputElement).checked)} />
+              ${labelOf(layer)}
+            </label>`,
+        )}
+      </div>
+      ${
+        this._input.layers
+          ? html`<button type="button" class="link" @click=${() => this.choose({ layers: null })}>${words.visible_layers}</button>`
+          : nothing
+      }
+    </div>`;
+  }
+
+  private features(): TemplateResult {
+    const all = [...this.session.layers.all].reverse();
+    const { features } = this._input;
+    const choose = (event: Event): void => {
+      const { value } = event.target as HTMLSelectElement;
+      this.choose({ features: value === "" ? null : Number(value) });
+    };
+    return html`<div class="group">
+      <label class="field">
+        <span>${words.features}</span>
+        <select name="features" aria-describedby="features_hint" @change=${choose}>
+          <option value="" ?selected=${features === null}>${words.no_features}</option>
+          ${all.map((layer) => html`<option value=${layer.id} ?selected=${layer.id === features}>${labelOf(layer)}</option>`)}
+        </select>
+      </label>
+      <p class="hint" id="features_hint">${words.features_hint}</p>
+    </div>`;
+  }
+
+  private size(): TemplateResult {
+    const { size } = this._input;
+    const choose = (event: Event): void => {
+      const { value } = event.target as HTMLSelectElement;
+      this.choose({ size: value === "" ? null : Number(value) });
+    };
+    return html`<div class="group">
+      <label class="field">
+        <span>${words.size}</span>
+        <select name="size" aria-describedby="size_hint" @change=${choose}>
+          <option value="" ?selected=${size === null}>${words.auto_size}</option>
+          ${kTextureSizes.map((side) => html`<option value=${side} ?selected=${side === size}>${words.side(side)}</option>`)}
+        </select>
+      </label>
+      <p class="hint" id="size_hint">${words.size_hint}</p>
+    </div>`;
+  }
+
+  private format(): TemplateResult {
+    return html`<div class="group">
+      <span class="caption" id="format">${words.format}</span>
+      ${radioGroup({
+        label: { id: "format" },
+        class: "formats",
+        choices: kTextureFormats.map((value) => ({
+          value,
+          content: html`<b>${words.formats[value]}</b><span class="hint">${words.format_hints[value]}</span>`,
+        })),
+        chosen: this._input.format,
+        choose: (format) => this.choose({ format }),
+      })}
+    </div>`;
+  }
+
+  private light(): TemplateResult {
+    return html`<div class="group">
+      <label class="check">
+        <input type="checkbox" name="unlit" aria-describedby="unlit_hint" .checked=${this._input.unlit} @change=${(event: Event) => this.choose({ unlit: (event.target as HTMLInputElement).checked })} />
+        ${words.unlit}
+      </label>
+      <p class="hint" id="unlit_hint">${words.unlit_hint}</p>
+    </div>`;
+  }
+
+  /** The ids of the layers in the texture, from bottom to top. */
+  private get chosenLayers(): number[] {
+    const { layers } = this.session;
+    const { layers: chosen } = this._input;
+    return layers.all
+      .filter((layer) => chosen?.includes(layer.id) ?? layers.visible(layer))
+      .map(({ id }) => id);
+  }
+
+  private choose(change: Partial<ExportInput>): void {
+    this._input = this.session.exports.draft = { ...this._input, ...change };
+    this._problem = "";
+  }
+
+  private chooseLayer({ id }: Layer, on: boolean): void {
+    const others = this.chosenLayers.filter((each) => each !== id);
+    this.choose({ layers: on ? [...others, id] : others });
+  }
+
+  private refuse(problem: ProblemBody): void {
+    this._problem = problem.detail ?? problem.title;
+  }
+
+  private readonly onSubmit = (event: Event): void => {
+    event.preventDefault();
+    if (!this._file.isFree) return;
+    const { exports, model } = this.session;
+    const request = exportRequest(this._input, this.chosenLayers);
+    const lang = pageLanguage(pageLocale(), []);
+    this._problem = "";
+    void this._file.make(
+      () => exports.make(words.job(model?.name ?? ""), words.ready, request, lang),
+      () => this.isConnected,
+    );
+  };
+}
