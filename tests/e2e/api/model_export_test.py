@@ -76,7 +76,7 @@ def make_layers(server):
     dab(server, f"{M}/layers/wet", 7.5, 40, 40, 30)
     dab(server, f"{M}/layers/units", 1, 60, 40, 25)
     dab(server, f"{M}/layers/units", 2, 40, 70, 25)
-    # more records than one channel of a picture can tell apart
+    # more records than one channel of a picture can distinguish
     rows = [f"{x * 5.5 + 3},{y * 5.5 + 3},0,{1 + y * 17 + x}" for y in range(17) for x in range(17)]
     server.ok(
         "POST",
