@@ -21,8 +21,7 @@ Plane front_of(std::string_view up) {
   return {frame.right, frame.up, frame.into};
 }
 
-// Returns a camera of width × height pixels over a part of the drawing. `corner_mm` and `size_mm`
-// are in millimeters, from the drawing's top left.
+// Returns a camera of width × height pixels over a part of the drawing.
 Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const glm::dvec2& size_mm,
                    int width, int height) {
   const Plane& plane = drawing.plane;
@@ -126,12 +125,16 @@ std::vector<Part> parts_of(const Drawing& drawing, int side) {
   return parts;
 }
 
-Camera camera_of(const Drawing& drawing) {
-  const glm::dvec2 size_mm = glm::dvec2(drawing.width, drawing.height) * (kInch_mm / drawing.dpi);
+Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const glm::dvec2& size_mm) {
   const auto pixels = [](double mm) {
     return std::clamp(static_cast<int>(mm / kInch_mm * kCameraDpi), 1, kMaxViewSize);
   };
-  return camera_over(drawing, {0, 0}, size_mm, pixels(size_mm.x), pixels(size_mm.y));
+  return camera_over(drawing, corner_mm, size_mm, pixels(size_mm.x), pixels(size_mm.y));
+}
+
+Camera camera_of(const Drawing& drawing) {
+  return camera_over(drawing, {0, 0},
+                     glm::dvec2(drawing.width, drawing.height) * (kInch_mm / drawing.dpi));
 }
 
 }  // namespace strata::figure

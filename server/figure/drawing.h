@@ -76,6 +76,9 @@ struct Part {
 // have the same pixels per inch.
 std::vector<Part> parts_of(const Drawing& drawing, int side = 2048);
 
+// Returns a camera over a part of the drawing, for picking. `corner_mm` and `size_mm` are in
+// millimeters on paper, from the drawing's top left.
+Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const glm::dvec2& size_mm);
 // Returns a camera over the whole drawing, for picking, with at most `kCameraDpi` pixels per inch.
 Camera camera_of(const Drawing& drawing);
 

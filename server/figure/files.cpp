@@ -6,10 +6,17 @@
 namespace strata::figure {
 namespace {
 
-Sheet printable_sheet(Sheet sheet) {
-  for (Group& group : sheet.groups)
+void make_printable(std::vector<Group>& groups) {
+  for (Group& group : groups) {
+    group.name = printable(group.name);
     for (Item& item : group.items)
       if (auto* words = std::get_if<Words>(&item)) words->text = printable(words->text);
+    make_printable(group.parts);
+  }
+}
+
+Sheet printable_sheet(Sheet sheet) {
+  make_printable(sheet.groups);
   return sheet;
 }
 
@@ -21,6 +28,7 @@ std::string_view media_type(Format format) {
     case Format::tiff: return "image/tiff";
     case Format::svg: return "image/svg+xml";
     case Format::pdf: return "application/pdf";
+    case Format::dxf: return "image/vnd.dxf";
   }
   return {};
 }
@@ -31,6 +39,7 @@ std::string_view extension(Format format) {
     case Format::tiff: return ".tif";
     case Format::svg: return ".svg";
     case Format::pdf: return ".pdf";
+    case Format::dxf: return ".dxf";
   }
   return {};
 }
@@ -56,6 +65,7 @@ Result<void> write_figure(const Sheet& requested, const Picture& drawing, int dp
     case Format::tiff: return write_tiff(sheet, drawing, dpi, document, file, progress);
     case Format::svg: return write_svg(sheet, drawing, document, file, progress);
     case Format::pdf: return write_pdf(sheet, drawing, document, file, progress);
+    case Format::dxf: break;  // has no sheet
   }
   return {};
 }

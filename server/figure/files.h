@@ -10,7 +10,7 @@
 
 namespace strata::figure {
 
-enum class Format { png, tiff, svg, pdf };
+enum class Format { png, tiff, svg, pdf, dxf };
 std::string_view media_type(Format format);
 std::string_view extension(Format format);  // ".pdf"
 
@@ -19,7 +19,7 @@ std::string_view extension(Format format);  // ".pdf"
 // TIFF (deflate) contain only pixels, and the number of pixels per inch. The metadata of the file
 // contains `title` and `author`. Characters that files cannot contain (control characters, U+FFFE,
 // U+FFFF) are removed from all texts. Errors: `cancelled`, and `storage_full` if the file cannot be
-// written.
+// written. For DXF, see write_dxf.
 struct Document {
   std::string title, author;
 };

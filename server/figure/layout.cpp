@@ -5,6 +5,7 @@
 
 #include "core/text/number_text.h"
 #include "figure/paper.h"
+#include "figure/pattern.h"
 #include "figure/text.h"
 
 namespace strata::figure {
@@ -19,11 +20,6 @@ constexpr int kMaxTitleLines = 2, kMaxCaptionLines = 8, kMaxCreditLines = 3;
 constexpr double kScaleWidth = 80, kScaleHeight = 16;
 constexpr double kLegendColumn = 56, kSwatchWidth = 6, kSwatchHeight = 3, kEntry = 4.2,
                  kTitleGap = 1.2;
-constexpr double kPi = 3.14159265358979323846;
-
-glm::dvec2 direction(double degrees) {
-  return {std::cos(degrees * kPi / 180), -std::sin(degrees * kPi / 180)};
-}
 
 Path rectangle(const glm::dvec2& corner, const glm::dvec2& size) {
   return {{corner, corner + glm::dvec2(size.x, 0), corner + size, corner + glm::dvec2(0, size.y)}};
@@ -46,11 +42,7 @@ std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& throu
   return std::pair(through + from * along, through + to * along);
 }
 
-// The patterns of shaders/shared/shade.h. A pixel is a hundredth of an inch here.
-constexpr double kPatternPixel = kInch_mm / 100;
-constexpr double kSpacing = 7 * kPatternPixel, kHatchStroke = 0.4 * kSpacing,
-                 kDotRadius = 0.32 * kSpacing;
-constexpr double kGround = 0.3, kBorder = 2 * kPatternPixel;
+constexpr double kHatchStroke = kHatchShare * kSpacing, kDotRadius = kDotShare * kSpacing;
 
 Rgba on_paper(const Rgba& ink, double share) {
   const auto mixed = [&](int channel) {

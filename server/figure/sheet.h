@@ -31,10 +31,32 @@ struct Words {
   bool halo = false;  // white border for text over a drawing
 };
 
+// All areas of one class or record. A point is inside if it is inside an odd number of rings.
+struct Area {
+  std::vector<std::vector<glm::dvec2>> rings;
+  Rgba color{};
+  Pattern pattern = Pattern::solid;
+  double angle = 45;      // of the lines, in degrees
+  double spacing_mm = 1;  // of lines and dots
+};
+
+// A line or, with one point, a point of a record. A white casing separates it from the drawing.
+struct Mark {
+  std::vector<glm::dvec2> points;
+  Rgba color{};
+  double width_mm = 0.5, casing_mm = 0;
+};
+
 using Item = std::variant<Path, Words>;
 struct Group {
   std::string id;  // "legend", for users who edit the file
   std::vector<Item> items;
+  std::string name{};  // "Damage", for users who edit the file. May be empty.
+  double opacity = 1;
+  // Drawn after the items, in this order.
+  std::vector<Area> areas{};
+  std::vector<Mark> marks{};
+  std::vector<Group> parts{};
 };
 
 struct Box {

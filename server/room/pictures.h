@@ -29,6 +29,7 @@ struct PictureRequest {
   // With `at`: by layer, the texels that waited for review at that time. They are drawn hatched.
   // Without `at`, the texels that wait at present are drawn hatched.
   std::map<LayerId, TileMap> provisional{};
+  bool marks = true;     // draw the lines and points of records
   bool on_floor = true;  // draw the model's contact shadow, if the light has one
   int samples = 1;       // samples of each pixel (render::FrameRequest::samples)
   // Per band of 2 million pixels: render::FrameRequest::samples_time.
@@ -62,9 +63,9 @@ class Pictures {
   // Draws one image and encodes it as a file.
   Result<std::vector<std::uint8_t>> draw_file(const PictureRequest& request, const Camera& camera,
                                               PictureFormat format, JpegSettings jpeg);
-  // Returns the visible values of a layer of whole numbers on a grid over the camera's window. Each
-  // value is from the middle of a cell, row by row from the top left. A value is nullopt where
-  // there is no surface or no value.
+  // Returns the visible values of a layer of whole numbers (see query::seen_keys) on a grid over
+  // the camera's window. Each value is from the middle of a cell, row by row from the top left. A
+  // value is nullopt where there is no surface or no value.
   virtual Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer,
                                                                       const Camera& camera,
                                                                       int columns, int rows,

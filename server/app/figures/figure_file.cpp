@@ -15,6 +15,15 @@ std::string file_name(const FigureRequest& request, double scale) {
          std::string(figure::extension(request.format));
 }
 
+std::shared_ptr<TemporaryFile> new_file(const FigureRequest& request, double scale,
+                                        const std::filesystem::path& folder) {
+  auto file = std::make_shared<TemporaryFile>();
+  file->path = folder / (to_string(random_uuid()) + ".figure");
+  file->name = file_name(request, scale);
+  file->media_type = figure::media_type(request.format);
+  return file;
+}
+
 }  // namespace
 
 ChosenSheet choose_sheet(const FigureRequest& request, const std::vector<figure::Legend>& legends,
@@ -44,13 +53,20 @@ Result<std::shared_ptr<const TemporaryFile>> write_figure_file(const FigureReque
                                                                const Picture& picture, double scale,
                                                                const std::filesystem::path& folder,
                                                                Progress& progress) {
-  auto file = std::make_shared<TemporaryFile>();
-  file->path = folder / (to_string(random_uuid()) + ".figure");
-  file->name = file_name(request, scale);
-  file->media_type = figure::media_type(request.format);
+  auto file = new_file(request, scale, folder);
   const figure::Document document{request.captions.title, request.captions.credit};
   STRATA_TRY(figure::write_figure(sheet, picture, request.dpi, request.format, document, file->path,
                                   progress));
+  file->bytes = std::filesystem::file_size(file->path);
+  return file;
+}
+
+Result<std::shared_ptr<const TemporaryFile>> write_dxf_file(const FigureRequest& request,
+                                                            const figure::DxfDrawing& drawing,
+                                                            const std::filesystem::path& folder,
+                                                            const Progress& progress) {
+  auto file = new_file(request, drawing.scale, folder);
+  STRATA_TRY(figure::write_dxf(drawing, file->path, progress));
   file->bytes = std::filesystem::file_size(file->path);
   return file;
 }

@@ -2,6 +2,7 @@
 
 #include "app/figures/figures.h"
 #include "figure/files.h"
+#include "figure/write_dxf.h"
 
 namespace strata::app {
 
@@ -25,5 +26,11 @@ Result<std::shared_ptr<const TemporaryFile>> write_figure_file(const FigureReque
                                                                const Picture& picture, double scale,
                                                                const std::filesystem::path& folder,
                                                                Progress& progress);
+
+// Writes a drawing for CAD programs to such a file.
+Result<std::shared_ptr<const TemporaryFile>> write_dxf_file(const FigureRequest& request,
+                                                            const figure::DxfDrawing& drawing,
+                                                            const std::filesystem::path& folder,
+                                                            const Progress& progress);
 
 }  // namespace strata::app

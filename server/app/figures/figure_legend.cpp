@@ -4,12 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include "app/figures/record_marks.h"
 #include "domain/tables/label_text.h"
-#include "room/edits.h"
 #include "room/pictures.h"
 #include "room/pipeline/provisional.h"
-#include "room/queries.h"
-#include "store/tables/records.h"
 #include "store/tables/tables.h"
 
 namespace strata::app {
@@ -20,21 +18,10 @@ namespace {
 constexpr double kMaxCells = 250'000;
 constexpr std::size_t kMaxPlaces = 32;  // tested points per line
 constexpr double kOpaque = 0.99;
-// The distance is multiplied by at least this factor, so steep surfaces hide points behind them.
-constexpr double kMinCosine = 1.0 / 12;
-// The depth below the surface at which lines and points are still drawn in the image.
-constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;
-
-// Returns the palette that the image uses for the layer.
-const Palette& palette_of(const FigureRequest& request, const Layer& layer) {
-  const auto& own = request.shown.shown.of(layer.id).palette;
-  return own ? *own : layer.palette;
-}
 
 query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
   const Palette& palette = palette_of(request, layer);
-  const double opacity =
-      std::clamp(request.shown.shown.of(layer.id).opacity.value_or(layer.opacity), 0.0, 1.0);
+  const double opacity = opacity_of(request, layer);
   query::LayerCover cover;
   cover.tells_values = lists_values(palette);
   if (!palette.column.empty()) {
@@ -55,50 +42,18 @@ query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
   return cover;
 }
 
-// Returns whether a point of a feature is in the drawing and not hidden by a surface. As in the
-// image (feature_sight_pass.comp), a point in front of the surface is visible. A point behind it is
-// visible up to `reach`, measured perpendicular to the surface.
-Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const glm::dvec3& place,
-                     double reach) {
-  const auto is_cut_off = [&](const glm::dvec4& plane) {
-    return glm::dot(plane, glm::dvec4(place, 1)) < 0;
-  };
-  if (std::ranges::any_of(camera.section, is_cut_off)) return false;
-  const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(place, 1);
-  const glm::dvec2 pixel((clip.x + 1) / 2 * camera.width, (1 - clip.y) / 2 * camera.height);
-  if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.width && pixel.y <= camera.height))
-    return false;
-  const auto hit = request.room->queries().pick(camera, pixel.x, pixel.y, {}, {});
-  if (!hit) return tl::unexpected(hit.error());
-  if (!hit->hit) return true;
-  const glm::dvec3 apart = place - glm::dvec3(hit->position);
-  if ((camera.view * glm::dvec4(apart, 0)).z >= 0) return true;  // in front of the surface
-  return std::max(std::abs(glm::dot(apart, glm::dvec3(hit->normal))),
-                  kMinCosine * glm::length(apart)) <= reach;
-}
-
 // Returns the keys of records with lines or points in the drawing. The image shows lines and points
 // above all layers.
 Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& request,
                                      const Layer& layer, const Camera& camera) {
-  const Model model = request.room->model();
-  std::optional<std::int64_t> at;  // sequence of the table; empty: current state
-  if (*request.shown.at < request.room->edits().durable_sequence()) {
-    const auto then =
-        STRATA_TRY(store.tables().sequence_when(*layer.table, model.id, *request.shown.at));
-    at = then;
-  }
-  const auto features =
-      STRATA_TRY(store.records().features(*layer.table, request.role, model.id, at));
-  const double pixel = 2 / (std::abs(camera.projection[0][0]) * camera.width);
-  const double reach = kPlaceReach_px * pixel +
-                       kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);
+  const auto features = STRATA_TRY(features_in(store, request, layer));
+  const MarkSight sight(request, camera);
   std::set<double> keys;
   for (const auto& [key, feature] : features) {
     const auto value = static_cast<double>(key);
     const std::size_t step = std::max<std::size_t>(1, feature.places.size() / kMaxPlaces);
     for (std::size_t i = 0; i < feature.places.size() && !keys.contains(value); i += step) {
-      const auto seen = STRATA_TRY(is_seen(request, camera, feature.places[i], reach));
+      const auto seen = STRATA_TRY(sight.sees(feature.places[i]));
       if (seen) keys.insert(value);
     }
   }
@@ -106,6 +61,15 @@ Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& r
 }
 
 }  // namespace
+
+const Palette& palette_of(const FigureRequest& request, const Layer& layer) {
+  const auto& own = request.shown.shown.of(layer.id).palette;
+  return own ? *own : layer.palette;
+}
+
+double opacity_of(const FigureRequest& request, const Layer& layer) {
+  return std::clamp(request.shown.shown.of(layer.id).opacity.value_or(layer.opacity), 0.0, 1.0);
+}
 
 std::vector<query::LayerCover> covers_of(const FigureRequest& request) {
   std::vector<query::LayerCover> covers;

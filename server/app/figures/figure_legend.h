@@ -11,6 +11,10 @@ namespace strata::app {
 Result<std::vector<figure::Legend>> legends_of(store::Store& store, const FigureRequest& request,
                                                const figure::Drawing& drawing);
 
+// Returns the palette and the opacity that the figure uses for the layer.
+const Palette& palette_of(const FigureRequest& request, const Layer& layer);
+double opacity_of(const FigureRequest& request, const Layer& layer);
+
 // Returns what query::seen_layers needs to know about the layers of the figure.
 std::vector<query::LayerCover> covers_of(const FigureRequest& request);
 // Returns the legends of the layers that are visible. `seen` has one element for each layer.

@@ -8,6 +8,7 @@
 
 #include "app/figures/figure_file.h"
 #include "app/figures/figure_legend.h"
+#include "app/figures/figure_vectors.h"
 #include "domain/scene/compass.h"
 #include "mesh/surface/geometry.h"
 #include "room/pictures.h"
@@ -136,6 +137,7 @@ int samples_of(int dpi) {
   return std::clamp(kSamplesPerInch * kSamplesPerInch / (dpi * dpi), kMin, kMax);
 }
 
+// Draws the layers and marks that are not vectors.
 Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawing,
                      Progress& progress) {
   Picture picture{drawing.width, drawing.height, {}};
@@ -148,6 +150,11 @@ Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawin
   room::PictureRequest shown = request.shown;
   shown.samples = samples_of(drawing.dpi);
   shown.on_floor = false;  // a drawing shows only the object
+  if (request.outline_tolerance_mm) {
+    shown.marks = false;
+    for (const std::size_t i : outlined_layers(request))
+      std::erase(*shown.layers, to_string(request.layers[i].id));
+  }
   auto drawn = request.room->pictures().draw(
       shown, picture_parts, [&](std::size_t i, const room::PictureBand& band) -> Result<void> {
         const figure::Part& part = parts[i];
@@ -225,12 +232,36 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
   const figure::SheetLayout& layout = composed.layout;
   const figure::Drawing drawing = drawing_on(composed);
 
-  const auto held = STRATA_TRY(budget.take(std::uint64_t{4} * drawing.width * drawing.height));
   const auto labels = STRATA_TRY(labels_of(store, request, drawing, layout.drawing_mm()));
-  progress.begin_stage(0.05, 0.75);
+  FigureVectors vectors;
+  if (request.outline_tolerance_mm) {
+    auto found =
+        STRATA_TRY(figure_vectors(store, budget, request, drawing, layout.drawing(), progress));
+    vectors = std::move(found);
+  }
+  if (request.format == figure::Format::dxf) {
+    const double mm_per_unit = model.metres() * 1000;
+    const glm::dvec2 half_mm = layout.drawing_mm() * (drawing.scale / 2);
+    const figure::DxfDrawing dxf{std::move(vectors.areas),
+                                 std::move(vectors.marks),
+                                 labels,
+                                 layout.drawing(),
+                                 drawing.scale,
+                                 drawing.center * mm_per_unit + glm::dvec2(-half_mm.x, half_mm.y)};
+    return write_dxf_file(request, dxf, folder, progress);
+  }
+  const auto held = STRATA_TRY(budget.take(std::uint64_t{4} * drawing.width * drawing.height));
+  progress.begin_stage(request.outline_tolerance_mm ? 0.45 : 0.05, 0.75);
   const auto picture = STRATA_TRY(draw(request, drawing, progress));
   progress.begin_stage(0.75, 1);
-  const auto sheet = layout.finish(drawing.scale, north_on(request.plane, model), labels);
+  auto sheet = layout.finish(drawing.scale, north_on(request.plane, model), labels);
+  std::vector<figure::Group> groups;  // below all others
+  for (const figure::LayerVectors& layer : vectors.areas)
+    groups.push_back(figure::area_group(layer));
+  for (const figure::LayerVectors& layer : vectors.marks)
+    groups.push_back(figure::mark_group(layer));
+  sheet.groups.insert(sheet.groups.begin(), std::make_move_iterator(groups.begin()),
+                      std::make_move_iterator(groups.end()));
   return write_figure_file(request, sheet, picture, drawing.scale, folder, progress);
 }
 

@@ -46,6 +46,9 @@ struct FigureRequest {
   std::optional<bool> landscape;
   int dpi = 300;
   figure::Format format = figure::Format::pdf;
+  // Layers of classes and the lines and points of records are vectors whose outlines are at most
+  // this distance on paper from the texels. nullopt: they are a part of the picture.
+  std::optional<double> outline_tolerance_mm{};
   figure::Captions captions;
   bool legend = true;
   std::string waiting_label;  // label for unreviewed edits in the legend

@@ -163,7 +163,7 @@ std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree
   for_each_seen(tree, origin, camera, columns, rows, {layer},
                 [&](std::size_t cell, const glm::dvec2&, const SurfacePoint& point) {
                   if (const LayerValue& value = point.values[0]; value.valid)
-                    keys[cell] = static_cast<std::uint32_t>(value.value);
+                    keys[cell] = static_cast<std::uint32_t>(static_cast<std::int64_t>(value.value));
                 });
   return keys;
 }

@@ -49,7 +49,7 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
                   double x, double y, const std::vector<LayerView>& layers);
 // Returns the key at the center of each cell of a grid over the window of the camera, row by row
 // from the top left. A cell without a surface or without paint has no key. The layer must store
-// non-negative integers.
+// integers. The key of a negative number is its value as a 32-bit integer.
 std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree,
                                                     const glm::dvec3& origin, const Camera& camera,
                                                     int columns, int rows, const LayerView& layer);

@@ -116,7 +116,7 @@ Result<void> OpenRoom::PicturesPart::draw(const PictureRequest& picture,
     }
     if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
     add_styles(style, waiting, request.style.layers);
-    if (!item.layer.table) continue;
+    if (!item.layer.table || !picture.marks) continue;
     // An image of the newest edit shows the present records, also if they have changed since then.
     const bool is_past = picture.at && *picture.at < room_.durable_;
     auto features = is_past ? room_.record_features_->when(*item.layer.table, sight, *picture.at)

@@ -3,12 +3,15 @@
 #include <png.h>
 #include <tiffio.h>
 
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <numeric>
 #include <sstream>
 
 #include "figure/files.h"
 #include "figure/layout.h"
+#include "figure/sheet_rows.h"
 #include "figure/text.h"
 
 namespace strata::figure {
@@ -376,6 +379,80 @@ TEST_F(Files, AFullDiskIsAnError) {
                                     Format::pdf, {}, file, progress_);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, ErrorCode::storage_full) << written.error().detail;
+}
+
+// Four squares of 20 mm with a hole of 10 mm, one for each pattern.
+Sheet squares() {
+  Sheet sheet;
+  sheet.size = {100, 40};
+  sheet.drawing = {{0, 0}, {100, 40}};
+  Group group;
+  group.id = "areas-damage";
+  group.name = "Damage <1>";
+  const auto square = [](double left, double top, double side) {
+    return std::vector<glm::dvec2>{
+        {left, top}, {left + side, top}, {left + side, top + side}, {left, top + side}};
+  };
+  for (int i = 0; i < 4; ++i) {
+    Group& part = group.parts.emplace_back();
+    part.id = "areas-damage-" + std::to_string(i);
+    part.name = "Class " + std::to_string(i);
+    part.areas.push_back({{square(2 + 25 * i, 10, 20), square(7 + 25 * i, 15, 10)},
+                          {200, 0, 0, 255},
+                          static_cast<Pattern>(i),
+                          45,
+                          1.778});
+  }
+  sheet.groups.push_back(std::move(group));
+  return sheet;
+}
+
+TEST(Areas, AreDrawnWithTheirHolesAndPatterns) {
+  const Sheet sheet = squares();
+  const Picture white{1, 1, {255, 255, 255, 255}};
+  Progress progress;
+  std::array<double, 4> ink{};  // share of the ink in the area of each square
+  int row = 0;
+  constexpr int kDpi = 254;  // ten pixels per millimeter
+  ASSERT_TRUE(sheet_rows(sheet, white, kDpi, progress, [&](std::span<const std::uint8_t> rgb) {
+    for (std::size_t x = 0; x < rgb.size() / 3; ++x) {
+      const double missing = (255 - rgb[3 * x + 1]) / 255.0;
+      const auto square = std::min<std::size_t>(3, x / 250);
+      ink[square] += missing / (20 * 20 - 10 * 10) / 100;
+      const double in_x = static_cast<double>(x) / 10 - 2 - 25 * static_cast<double>(square),
+                   in_y = row / 10.0 - 10;
+      const bool in_hole = in_x > 5.2 && in_y > 5.2 && in_x < 14.8 && in_y < 14.8;
+      const bool outside = in_x < -0.2 || in_y < -0.2 || in_x > 20.2 || in_y > 20.2;
+      if (in_hole || outside) EXPECT_EQ(missing, 0) << square << " " << in_x << " " << in_y;
+    }
+    ++row;
+    return true;
+  }));
+  EXPECT_NEAR(ink[0], 1, 0.02);
+  constexpr double kTwice = 2 * 0.508;  // the width of the border inside the area, on two sides
+  const double border =
+      (20 * 20 - std::pow(20 - kTwice, 2) + std::pow(10 + kTwice, 2) - 10 * 10) / 300;
+  EXPECT_NEAR(ink[3], border, 0.03);
+  EXPECT_NEAR(ink[1], border + (1 - border) * (0.4 + 0.6 * 0.3), 0.03);
+  const double dots = 3.14159 * 0.32 * 0.32;
+  EXPECT_NEAR(ink[2], border + (1 - border) * (dots + (1 - dots) * 0.3), 0.03);
+}
+
+TEST(Areas, AreNamedGroupsInSvg) {
+  const fs::path path = fs::temp_directory_path() / "strata_areas_test.svg";
+  Progress progress;
+  ASSERT_TRUE(write_figure(squares(), Picture{1, 1, {255, 255, 255, 255}}, 300, Format::svg, {},
+                           path, progress));
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  fs::remove(path);
+  const std::string svg = text.str();
+  for (const char* expected :
+       {"<g id=\"areas-damage\" inkscape:groupmode=\"layer\" inkscape:label=\"Damage &lt;1&gt;\">",
+        "<title>Class 3</title>", "fill-rule=\"evenodd\" fill=\"#c80000\"",
+        "M2 10L22 10 22 30 2 30ZM7 15L17 15 17 25 7 25Z", "clip-path=\"url(#area-1-clip)\""})
+    EXPECT_NE(svg.find(expected), std::string::npos) << expected;
 }
 
 }  // namespace

@@ -3837,8 +3837,8 @@ export interface FrameRequest {
   format?: "jpeg" | "png";
 }
 
-/** Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. */
-export type FigureFormat = "png" | "tiff" | "svg" | "pdf";
+/** Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. Not with `rollout`. */
+export type FigureFormat = "png" | "tiff" | "svg" | "pdf" | "dxf";
 
 /** Direction of a figure, relative to the model's up. In the view from the top, the front of the model is at the bottom. For a model in map coordinates with z up, this is the plan, with y pointing up. */
 export type FigureDirection = "top" | "bottom" | "front" | "back" | "left" | "right";
@@ -3957,6 +3957,10 @@ export interface FigureRequest {
   dpi?: number;
   /** Default: pdf. */
   format?: FigureFormat;
+  /** `outlines`: the areas of classes and records, and the lines and points of records, are vectors. Only in SVG and PDF files, and not with `rollout`. A DXF file always has outlines. Layers of decimal numbers, layers with a continuous palette, layers that are multiplied or screened, layers with paint that waits for review, and all layers below one of these remain pixels. Default: "pixels". */
+  areas?: "pixels" | "outlines";
+  /** With `areas: outlines` and in DXF files: the largest distance on paper between an outline and the border of the area, without the half cell of the grid (at most 0.05 mm on A4). Pieces smaller than a square whose sides are twice as long become a part of their neighbor. Default: 0.1. */
+  tolerance_mm?: number;
   /** Default: the name of the model. */
   title?: string;
   caption?: string;

@@ -20,7 +20,11 @@ export const kDirections: readonly FigureDirection[] = [
   "left",
   "right",
 ];
-export const kFormats: readonly FigureFormat[] = ["pdf", "svg", "png", "tiff"];
+export const kFormats: readonly FigureFormat[] = ["pdf", "svg", "dxf", "png", "tiff"];
+/** How layers of classes and of records are drawn. */
+export const kAreas = ["pixels", "outlines"] as const;
+/** The offered tolerances of outlines, in millimeters on paper. */
+export const kTolerances: readonly number[] = [0.05, 0.1, 0.2, 0.5, 1];
 export const kPapers = ["a5", "a4", "a3"] as const;
 export const kOrientations = ["portrait", "landscape"] as const;
 /** The offered scales. 5 means 1 : 5. */
@@ -32,6 +36,7 @@ export const kDpiRange = { least: 50, most: 600 };
 const kPreviewDpi = { a5: 100, a4: 80, a3: 60 };
 
 export type Paper = (typeof kPapers)[number];
+export type Areas = (typeof kAreas)[number];
 export type Orientation = (typeof kOrientations)[number];
 /**
  * The direction of a figure: the camera of the current or saved view, an axis, or the normal of a
@@ -48,6 +53,8 @@ export interface FigureChoices {
   orientation: Orientation | null; // null for the orientation with the larger scale
   dpi: number;
   format: FigureFormat;
+  areas: Areas;
+  tolerance_mm: number;
   legend: boolean;
 }
 
@@ -74,6 +81,8 @@ export const usualFigure = (): FigureChoices => ({
   orientation: null,
   dpi: 300,
   format: "pdf",
+  areas: "pixels",
+  tolerance_mm: 0.1,
   legend: true,
 });
 
@@ -100,19 +109,29 @@ export function figureChoices(kept: unknown): FigureChoices {
     orientation: oneOf(known["orientation"], [null, ...kOrientations], usual.orientation),
     dpi: isDpi(known["dpi"]) ? known["dpi"] : usual.dpi,
     format: oneOf(known["format"], kFormats, usual.format),
+    areas: oneOf(known["areas"], kAreas, usual.areas),
+    tolerance_mm: oneOf(known["tolerance_mm"], kTolerances, usual.tolerance_mm),
     legend: oneOf(known["legend"], [true, false], usual.legend),
   };
 }
 
+/** Returns whether the user can choose between pixels and outlines. */
+export const hasAreas = ({ from, format }: FigureChoices): boolean =>
+  from !== "rollout" && (format === "pdf" || format === "svg");
+/** Returns whether the figure has outlines. A drawing for CAD programs always has them. */
+export const hasOutlines = (choices: FigureChoices): boolean =>
+  choices.format === "dxf" || (hasAreas(choices) && choices.areas === "outlines");
+
 /** Builds the request. Returns null without the required face or rollout. */
 export function figureRequest(
   shown: FigureShown,
-  { from, scale, orientation, ...choices }: FigureChoices,
+  chosen: FigureChoices,
   words: FigureWords,
   face: Face | null,
   labels: FigureLabels | null,
   rollout: FigureRollout | null = null,
 ): FigureRequest | null {
+  const { from, scale, orientation, areas, tolerance_mm: tolerance, ...choices } = chosen;
   const content = contentOf(shown, from, face, labels, rollout);
   if (!content) return null;
   const written = Object.entries(words).flatMap(([name, text]) =>
@@ -123,6 +142,8 @@ export function figureRequest(
     ...choices,
     ...(scale === null ? {} : { scale }),
     ...(orientation === null ? {} : { orientation }),
+    ...(hasAreas(chosen) && areas === "outlines" ? { areas } : {}),
+    ...(hasOutlines(chosen) ? { tolerance_mm: tolerance } : {}),
     ...(Object.fromEntries(written) as Partial<FigureWords>),
   };
 }
@@ -146,11 +167,16 @@ function contentOf(
 }
 
 /** Requests the same sheet as a small image. */
-export const previewRequest = (request: FigureRequest): FigureRequest => ({
-  ...request,
-  format: "png",
-  dpi: kPreviewDpi[request.paper ?? "a4"],
-});
+export function previewRequest(request: FigureRequest): FigureRequest {
+  const preview: FigureRequest = {
+    ...request,
+    format: "png",
+    dpi: kPreviewDpi[request.paper ?? "a4"],
+  };
+  delete preview.areas;
+  delete preview.tolerance_mm;
+  return preview;
+}
 
 /** Parses a scale such as "1 : 40", "2:1" or 40. Returns NaN for any other text. */
 export function readScale(typed: string): number {

@@ -5230,6 +5230,7 @@ export interface operations {
                     "image/png": string;
                     "image/svg+xml": string;
                     "image/tiff": string;
+                    "image/vnd.dxf": string;
                 };
             };
             202: {

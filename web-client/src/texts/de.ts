@@ -1712,9 +1712,15 @@ export const texts = {
     formats: {
       pdf: "Für Druck und Berichte; Text bleibt bearbeitbar",
       svg: "Für Zeichenprogramme wie Inkscape oder Illustrator",
+      dxf: "Für CAD-Programme; Millimeter am Objekt",
       png: "Für Textdokumente, Folien und das Web",
       tiff: "Für Verlage und Archive",
     },
+    areas: "Flächen",
+    areas_as: { pixels: "Pixel", outlines: "Glatte Umrisse" },
+    tolerance: "Toleranz auf dem Papier",
+    outlines_hint:
+      "Ebenen mit Klassen und Datensätzen werden zu Vektoren. Andere Ebenen und alle Ebenen darunter bleiben Pixel. Eine DXF-Datei enthält nur Vektoren.",
     written: { title: "Titel", caption: "Bildunterschrift", credit: "Nachweis" },
     caption_hint: "Westwand, Zustand im Frühjahr",
     credit_hint: "Urheberschaft, Eigentum und Lizenz",

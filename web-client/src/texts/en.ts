@@ -1669,9 +1669,15 @@ export const texts = {
     formats: {
       pdf: "For print and reports; text stays editable",
       svg: "For drawing programs such as Inkscape or Illustrator",
+      dxf: "For CAD programs; millimeters on the object",
       png: "For text documents, slides and the web",
       tiff: "For publishers and archives",
     },
+    areas: "Areas",
+    areas_as: { pixels: "Pixels", outlines: "Smooth outlines" },
+    tolerance: "Tolerance on paper",
+    outlines_hint:
+      "Layers of classes and records become vectors. Other layers, and all layers below them, remain pixels. A DXF file contains only vectors.",
     written: { title: "Title", caption: "Caption", credit: "Credit" },
     caption_hint: "West wall, condition in spring",
     credit_hint: "Author, owner and license",

@@ -1703,9 +1703,15 @@ export const texts = {
     formats: {
       pdf: "Para impresión e informes; el texto sigue siendo editable",
       svg: "Para programas de dibujo como Inkscape o Illustrator",
+      dxf: "Para programas de CAD; milímetros en el objeto",
       png: "Para documentos de texto, diapositivas y la web",
       tiff: "Para editoriales y archivos",
     },
+    areas: "Áreas",
+    areas_as: { pixels: "Píxeles", outlines: "Contornos suaves" },
+    tolerance: "Tolerancia en el papel",
+    outlines_hint:
+      "Las capas de clases y de registros pasan a ser vectores. Las demás capas y todas las que están debajo siguen siendo píxeles. Un archivo DXF solo contiene vectores.",
     written: { title: "Título", caption: "Pie de figura", credit: "Créditos" },
     caption_hint: "Muro oeste, estado en primavera",
     credit_hint: "Autor, propietario y licencia",

@@ -1111,6 +1111,7 @@ std::string_view name(FigureFormat value) {
     case FigureFormat::tiff: return "tiff";
     case FigureFormat::svg: return "svg";
     case FigureFormat::pdf: return "pdf";
+    case FigureFormat::dxf: return "dxf";
   }
   return {};
 }
@@ -1121,6 +1122,7 @@ void read(const nlohmann::json& json, FigureFormat& value) {
   if (text == "tiff") value = FigureFormat::tiff;
   if (text == "svg") value = FigureFormat::svg;
   if (text == "pdf") value = FigureFormat::pdf;
+  if (text == "dxf") value = FigureFormat::dxf;
 }
 
 nlohmann::json to_json(const FigureFormat& value) { return name(value); }
@@ -1182,6 +1184,22 @@ void read(const nlohmann::json& json, FigureRequestOrientation& value) {
 }
 
 nlohmann::json to_json(const FigureRequestOrientation& value) { return name(value); }
+
+std::string_view name(FigureRequestAreas value) {
+  switch (value) {
+    case FigureRequestAreas::pixels: return "pixels";
+    case FigureRequestAreas::outlines: return "outlines";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, FigureRequestAreas& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "pixels") value = FigureRequestAreas::pixels;
+  if (text == "outlines") value = FigureRequestAreas::outlines;
+}
+
+nlohmann::json to_json(const FigureRequestAreas& value) { return name(value); }
 
 std::string_view name(ReportFormat value) {
   switch (value) {
@@ -4846,6 +4864,8 @@ void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "orientation", value.orientation);
   read_optional_member(json, "dpi", value.dpi);
   read_optional_member(json, "format", value.format);
+  read_optional_member(json, "areas", value.areas);
+  read_optional_member(json, "tolerance_mm", value.tolerance_mm);
   read_optional_member(json, "title", value.title);
   read_optional_member(json, "caption", value.caption);
   read_optional_member(json, "credit", value.credit);
@@ -4872,6 +4892,8 @@ nlohmann::json to_json(const FigureRequest& value) {
   write_optional_member(json, "orientation", value.orientation);
   write_member(json, "dpi", value.dpi);
   write_optional_member(json, "format", value.format);
+  write_member(json, "areas", value.areas);
+  write_optional_member(json, "tolerance_mm", value.tolerance_mm);
   write_optional_member(json, "title", value.title);
   write_optional_member(json, "caption", value.caption);
   write_optional_member(json, "credit", value.credit);

@@ -3777,8 +3777,8 @@ Result<void> check(const FrameRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
 
-// Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited.
-enum class FigureFormat { png, tiff, svg, pdf };
+// Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. Not with `rollout`.
+enum class FigureFormat { png, tiff, svg, pdf, dxf };
 std::string_view name(FigureFormat value);
 void read(const nlohmann::json& json, FigureFormat& value);
 nlohmann::json to_json(const FigureFormat& value);
@@ -3863,6 +3863,11 @@ std::string_view name(FigureRequestOrientation value);
 void read(const nlohmann::json& json, FigureRequestOrientation& value);
 nlohmann::json to_json(const FigureRequestOrientation& value);
 
+enum class FigureRequestAreas { pixels, outlines };
+std::string_view name(FigureRequestAreas value);
+void read(const nlohmann::json& json, FigureRequestAreas& value);
+nlohmann::json to_json(const FigureRequestAreas& value);
+
 // Figure to scale. A drawing to scale without perspective, on a sheet with a scale bar, legend and caption. A saved view, or the camera, layers, surface images and light, set its content. They also set the direction if no other member sets it. Without these members, the figure shows the default layers of the model from the top.
 struct FigureRequest {
   std::optional<std::string> view;  // Slug or id of a saved view.
@@ -3895,6 +3900,16 @@ struct FigureRequest {
   std::optional<FigureRequestOrientation> orientation;
   int dpi = 300;  // Pixels per inch. In SVG and PDF files, this applies only to the drawing.
   std::optional<FigureFormat> format;  // Default: pdf.
+  // `outlines`: the areas of classes and records, and the lines and points of records, are vectors.
+  // Only in SVG and PDF files, and not with `rollout`. A DXF file always has outlines. Layers of
+  // decimal numbers, layers with a continuous palette, layers that are multiplied or screened,
+  // layers with paint that waits for review, and all layers below one of these remain pixels.
+  FigureRequestAreas areas = FigureRequestAreas::pixels;
+  // With `areas: outlines` and in DXF files: the largest distance on paper between an outline and
+  // the border of the area, without the half cell of the grid (at most 0.05 mm on A4). Pieces
+  // smaller than a square whose sides are twice as long become a part of their neighbor. Default:
+  // 0.1.
+  std::optional<double> tolerance_mm;
   std::optional<std::string> title;  // Default: the name of the model.
   std::optional<std::string> caption;
   std::optional<std::string> credit;  // Default: the credit of the model.

@@ -26,12 +26,12 @@ using app::FigureRequest;
 constexpr Rgba kPaper{255, 255, 255, 255};
 
 // Directions, paper sizes and formats have the same order in the API, so a cast converts them.
-static_assert(static_cast<int>(protocol::FigureDirection::right) ==
-                  static_cast<int>(figure::Direction::right) &&
-              static_cast<int>(protocol::FigureRequestPaper::a3) ==
-                  static_cast<int>(figure::Paper::a3) &&
-              static_cast<int>(protocol::FigureFormat::pdf) ==
-                  static_cast<int>(figure::Format::pdf));
+static_assert(
+    static_cast<int>(protocol::FigureDirection::right) ==
+        static_cast<int>(figure::Direction::right) &&
+    static_cast<int>(protocol::FigureRequestPaper::a3) == static_cast<int>(figure::Paper::a3) &&
+    static_cast<int>(protocol::FigureFormat::pdf) == static_cast<int>(figure::Format::pdf) &&
+    static_cast<int>(protocol::FigureFormat::dxf) == static_cast<int>(figure::Format::dxf));
 
 // Copies the shown layers and images to `figure`. Returns the camera, if there is one.
 Result<std::optional<Camera>> read_shown(const RouteContext& context, const Request& request,
@@ -118,6 +118,36 @@ Result<void> read_unrolled(const protocol::FigureRequest& body, FigureRequest& f
   return {};
 }
 
+// Reads whether areas are outlines.
+Result<void> read_areas(const protocol::FigureRequest& body, FigureRequest& figure) {
+  constexpr double kTolerance_mm = 0.1;
+  if (figure.format == figure::Format::dxf) {
+    if (body.rollout)
+      return fail(ErrorCode::invalid, "DXF of a rollout",
+                  "A rollout cannot be a DXF file. Choose another format, or leave out `rollout`.",
+                  "format");
+    figure.outline_tolerance_mm = body.tolerance_mm.value_or(kTolerance_mm);
+    return {};
+  }
+  if (body.areas == protocol::FigureRequestAreas::pixels) {
+    if (!body.tolerance_mm) return {};
+    return fail(ErrorCode::invalid, "Setting without effect",
+                "Pixels have no tolerance. Leave out `tolerance_mm`, or set `areas` to `outlines`.",
+                "tolerance_mm");
+  }
+  if (body.rollout)
+    return fail(ErrorCode::invalid, "Outlines of a rollout",
+                "The areas of a rollout are pixels. Leave out `areas`, or leave out `rollout`.",
+                "areas");
+  if (figure.format != figure::Format::svg && figure.format != figure::Format::pdf)
+    return fail(ErrorCode::invalid, "Outlines in a picture",
+                "PNG and TIFF files contain only pixels. Choose the format `pdf` or `svg` for "
+                "outlines.",
+                "areas");
+  figure.outline_tolerance_mm = body.tolerance_mm.value_or(kTolerance_mm);
+  return {};
+}
+
 Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& body,
                          FigureRequest& figure) {
   const auto layer = figure.room->layers().find(protocol::to_ref(body.layer));
@@ -188,6 +218,7 @@ Result<FigureRequest> figure_request(const RouteContext& context, const Request&
     figure.landscape = *body.orientation == protocol::FigureRequestOrientation::landscape;
   figure.dpi = body.dpi;
   figure.format = static_cast<figure::Format>(body.format.value_or(protocol::FigureFormat::pdf));
+  STRATA_TRY(read_areas(body, figure));
   const Model model = figure.room->model();
   figure.captions = {body.title.value_or(model.name), body.caption.value_or(""),
                      body.credit.value_or(model.credit), body.continued};

@@ -7,7 +7,10 @@ import type { CameraMessage } from "../../math/camera";
 import {
   figureChoices,
   figureRequest,
+  hasAreas,
+  hasOutlines,
   isDpi,
+  kAreas,
   kDpiRange,
   kFigureFrom,
   kFormats,
@@ -15,13 +18,14 @@ import {
   kPapers,
   kResolutions,
   kScales,
+  kTolerances,
   readScale,
   scaleText,
   type FigureChoices,
   type FigureFrom,
   type FigureWords,
 } from "../../domain/figures";
-import { readNumber } from "../../core/locale";
+import { readNumber, typedNumber } from "../../core/locale";
 import type { FigureRequest, View } from "../../core/protocol.gen";
 import type { ProblemBody } from "../../core/types";
 import "../../ui/dialog";
@@ -140,7 +144,7 @@ export class StrataFigureDialog extends LitElement {
     return html`<strata-dialog vast heading=${view ? words.title_of_view(view.name) : words.title} way_out=${this._file.running ? "" : texts.close} @closed=${this.onClosed}>
       <div class="editor">
         <form id="figure" class="fields" novalidate @submit=${this.onSubmit}>
-          ${this.direction()} ${this.scale()} ${this.sheet()} ${this.resolution()} ${this.format()} ${this.written()}
+          ${this.direction()} ${this.scale()} ${this.sheet()} ${this.resolution()} ${this.format()} ${this.areas()} ${this.written()}
           ${this.legend()}
         </form>
         <div class="sheet">
@@ -288,6 +292,37 @@ export class StrataFigureDialog extends LitElement {
         choose: (value) => this.choose({ format: value }),
       })}
       ${this.problemOf("format")}
+    </div>`;
+  }
+
+  private areas(): TemplateResult | typeof nothing {
+    const chosen = this._choices;
+    if (!hasAreas(chosen) && !hasOutlines(chosen)) return nothing;
+    return html`<div class="group full">
+      ${
+        hasAreas(chosen)
+          ? html`<span class="caption" id="areas">${words.areas}</span>
+              ${radioGroup({
+                label: { id: "areas" },
+                class: "segments",
+                choices: kAreas.map((value) => ({ value, content: words.areas_as[value] })),
+                chosen: chosen.areas,
+                choose: (value) => this.choose({ areas: value }),
+              })}`
+          : nothing
+      }
+      ${
+        hasOutlines(chosen)
+          ? html`<label class="field">
+            <span>${words.tolerance}</span>
+            <select name="tolerance" @change=${(event: Event) => this.choose({ tolerance_mm: Number(valueFor(event)) })}>
+              ${kTolerances.map((each) => html`<option value=${each} ?selected=${each === chosen.tolerance_mm}>${typedNumber(each)} mm</option>`)}
+            </select>
+          </label>
+          <p class="hint">${words.outlines_hint}</p>`
+          : nothing
+      }
+      ${this.problemOf("areas")}
     </div>`;
   }
 

@@ -21,6 +21,7 @@ const kFieldOf: Readonly<Record<string, string>> = {
   camera: "from",
   view: "from",
   rollout: "from",
+  tolerance_mm: "areas",
 };
 const kFields: readonly string[] = [
   "from",
@@ -29,6 +30,7 @@ const kFields: readonly string[] = [
   "orientation",
   "dpi",
   "format",
+  "areas",
   "title",
   "caption",
   "credit",

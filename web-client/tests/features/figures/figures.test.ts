@@ -13,10 +13,13 @@ import { OrbitCamera } from "../../../src/math/camera";
 import {
   figureChoices,
   figureRequest,
+  kAreas,
   kDirections,
+  kFormats,
   kPapers,
   kScaleRange,
   kScales,
+  kTolerances,
   previewRequest,
   readScale,
   scaleText,
@@ -112,7 +115,9 @@ describe("choices that a browser kept", () => {
     paper: fc.constantFrom(...kPapers),
     orientation: fc.constantFrom(null, "portrait" as const, "landscape" as const),
     dpi: fc.integer({ min: 50, max: 600 }),
-    format: fc.constantFrom("pdf" as const, "svg" as const, "png" as const, "tiff" as const),
+    format: fc.constantFrom(...kFormats),
+    areas: fc.constantFrom(...kAreas),
+    tolerance_mm: fc.constantFrom(...kTolerances),
     legend: fc.boolean(),
   });
 
@@ -136,6 +141,8 @@ describe("choices that a browser kept", () => {
       orientation: "square",
       dpi: 72.5,
       format: "bmp",
+      areas: "lines",
+      tolerance_mm: 0.07,
       legend: 1,
       more: true,
     };
@@ -176,6 +183,8 @@ describe("what is asked for", () => {
       orientation: "landscape",
       dpi: 600,
       format: "tiff",
+      areas: "outlines",
+      tolerance_mm: 0.2,
       legend: false,
     };
     const words = { title: "West wall ", caption: "After\ncleaning", credit: "Museum" };
@@ -232,6 +241,28 @@ describe("what is asked for", () => {
     expect(figureRequest(shown, usualFigure(), unwritten, null, null, rollout)).not.toHaveProperty(
       "rollout",
     );
+  });
+
+  it("has outlines in PDF, SVG and DXF files only, and never in a rollout or a preview", () => {
+    const outlined = { ...usualFigure(), areas: "outlines" as const, tolerance_mm: 0.2 };
+    const rollout = { side: "inside" as const, relief: true };
+    const asked = (choices: FigureChoices): unknown[] => {
+      const request = figureRequest(shown, choices, unwritten, face, null, rollout)!;
+      const preview = previewRequest(request);
+      expect([preview.format, preview.areas, preview.tolerance_mm]).toEqual([
+        "png",
+        undefined,
+        undefined,
+      ]);
+      return [request.areas, request.tolerance_mm];
+    };
+    for (const format of ["pdf", "svg"] as const)
+      expect(asked({ ...outlined, format })).toEqual(["outlines", 0.2]);
+    expect(asked({ ...outlined, format: "dxf" })).toEqual([undefined, 0.2]);
+    for (const format of ["png", "tiff"] as const)
+      expect(asked({ ...outlined, format })).toEqual([undefined, undefined]);
+    expect(asked({ ...outlined, from: "rollout" })).toEqual([undefined, undefined]);
+    expect(asked(usualFigure())).toEqual([undefined, undefined]);
   });
 
   it("is the same sheet as a small picture for the preview", () => {
