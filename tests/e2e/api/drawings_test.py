@@ -68,7 +68,9 @@ def server(server):
         {"op": "fill", "mode": "where", "where": f"{disc} < 25", "erase": True},
     )
     fill(server, "marks", "x > 80 and y > 60", 3)
-    server.ok("POST", M + "/layers", {"name": "Damp", "type": "f32", "resolution": 256})
+    server.ok(
+        "POST", M + "/layers", {"name": "Damp", "type": "f32", "resolution": 2048, "visible": False}
+    )
     fill(server, "damp", "y < 20", 0.5)
     return server
 
