@@ -39,15 +39,14 @@ Result<mesh::GlbImage> encode(const Picture& picture, PictureFormat format, Prog
 
 Result<mesh::GlbImage> make_texture(const Services& services, const ModelExport& request,
                                     Progress& progress) {
-  const int size =
-      request.texture_size.value_or(default_texture_size(*request.room, request.layers));
+  const int size = request.texture_size ? *request.texture_size : default_texture_size(request);
   const auto geometry = request.room->surface().geometry();
   const auto memory = STRATA_TRY(services.rooms.memory().reserve(
       query::bytes_to_bake(*geometry, size), "the texture of a model"));
   Picture picture;
   {
     const ComposedSurface surface = STRATA_TRY(compose_surface(
-        services, *request.room, request.role, request.layers, {}, request.at, size));
+        services, *request.room, request.role, request.layers, request.shown, request.at, size));
     auto baked = STRATA_TRY(query::bake_colors(*geometry, surface.colors, size, progress));
     picture = std::move(baked);
   }
@@ -57,13 +56,16 @@ Result<mesh::GlbImage> make_texture(const Services& services, const ModelExport&
 
 }  // namespace
 
-int default_texture_size(room::Room& room, const std::vector<Layer>& layers) {
+int default_texture_size(const ModelExport& request) {
   constexpr unsigned kMin = 1024, kMax = 4096;
   unsigned side = kMin;
-  for (const Layer& layer : layers) side = std::max(side, static_cast<unsigned>(layer.resolution));
-  for (const SurfaceImage& image : room.surface_images().all())
-    if (image.visible)
-      side = std::max(side, static_cast<unsigned>(std::max(image.width, image.height)));
+  for (const Layer& layer : request.layers)
+    side = std::max(side, static_cast<unsigned>(layer.resolution));
+  const std::vector<SurfaceImage> images = request.room->surface_images().all();
+  for (const auto& shown : request.shown.images.value_or(room::surface_images_shown(images)))
+    for (const SurfaceImage& image : images)
+      if (image.id == shown.surface_image_id)
+        side = std::max(side, static_cast<unsigned>(std::max(image.width, image.height)));
   return static_cast<int>(std::bit_ceil(std::min(side, kMax)));
 }
 
@@ -79,10 +81,13 @@ Result<std::shared_ptr<const TemporaryFile>> export_model(const Services& servic
   model.metres_per_unit = description.metres();
   model.up = description.up;
   model.unlit = request.unlit;
+  STRATA_TRY(mesh::check_glb_size(*model.geometry));  // before the long work
   auto color = STRATA_TRY(make_texture(services, request, progress));
   model.color = std::move(color);
   progress.begin_stage(kEncoded, kIdsWritten);
   if (request.features) {
+    if (progress.cancelled()) return cancelled_problem();
+    progress.report(0, "Reading the features");
     const auto classes = STRATA_TRY(layer_classes(
         services.store,
         {request.room, *request.features, request.at, {}, request.role, request.language}));

@@ -13,7 +13,9 @@
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "media/picture.h"
+#include "room/at.h"
 #include "room/room.h"
+#include "room/view_settings.h"
 
 namespace strata::app {
 
@@ -21,7 +23,8 @@ namespace strata::app {
 struct ModelExport {
   std::shared_ptr<room::Room> room;  // as visible to the caller
   Role role = Role::viewer;
-  std::int64_t at = 0;              // the state of the layers
+  room::At at;                      // the state of the layers and records; empty: current state
+  room::ViewSettings shown;         // layers and surface images; the light has no effect
   std::vector<Layer> layers;        // in the texture, from bottom to top
   std::optional<Layer> features;    // its classes or records become features
   std::optional<int> texture_size;  // a power of two; nullopt: default_texture_size
@@ -30,15 +33,16 @@ struct ModelExport {
   std::string language;  // of the labels of terms
 };
 
-// Returns the size that shows all texels of the layers and all pixels of the surface images, but at
-// least 1024 and at most 4096.
-int default_texture_size(room::Room& room, const std::vector<Layer>& layers);
+// Returns the size that shows all texels of the layers and all pixels of the visible surface
+// images, but at least 1024 and at most 4096.
+int default_texture_size(const ModelExport& request);
 
 // Writes the model with its texture to a GLB file in `folder`. The texture shows what an unlit
 // image of the model shows: the scan, its visible surface images, and above them the layers.
 // Hatches and dots have the full color of their class, and an outline has no color. Returns 422 for
-// a palette that uses a column invisible to the role and for features without values, 503 if there
-// is too little memory, `storage_full`, and `cancelled`. Blocks.
+// a palette that uses a column invisible to the role and for features without values, 413 for a
+// mesh that is too large for the format, 503 if there is too little memory, `storage_full`, and
+// `cancelled`. Blocks.
 Result<std::shared_ptr<const TemporaryFile>> export_model(const Services& services,
                                                           const ModelExport& request,
                                                           const std::filesystem::path& folder,

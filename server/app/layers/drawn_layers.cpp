@@ -60,7 +60,7 @@ Result<ComposedSurface> compose_surface(const Services& services, room::Room& ro
     composed.memory.push_back(std::move(photo.memory));
   }
   for (const Layer& layer : bottom_to_top) {
-    auto tiles = STRATA_TRY(room.queries().tiles(layer.slug, at));
+    auto tiles = STRATA_TRY(room.queries().tiles(to_string(layer.id), at));
     query::DrawnLayer drawn =
         STRATA_TRY(drawn_layer(services, role, {layer, std::move(tiles)}, shown.of(layer.id)));
     composed.colors.add_layer(std::move(drawn));

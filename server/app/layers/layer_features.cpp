@@ -80,7 +80,8 @@ FeatureValue value_of(const Record& record, const Column& column, const WordsOfT
     case Kind::integer: return value.get<std::int64_t>();
     case Kind::real: return value.get<double>();
     case Kind::boolean: return value.get<bool>();
-    default: return print_value(column, value);
+    // Without the protection from formulas in spreadsheets, which would change the text.
+    default: return value.is_string() ? value.get<std::string>() : print_value(column, value);
   }
 }
 
@@ -229,8 +230,11 @@ struct Described {
   Records records;
 };
 
-Result<Described> describe(store::Store& store, const FeatureRequest& request) {
-  auto areas = STRATA_TRY(request.room->queries().layer_areas(request.layer.slug, request.at));
+Result<Described> describe(store::Store& store, FeatureRequest request) {
+  auto areas =
+      STRATA_TRY(request.room->queries().layer_areas(to_string(request.layer.id), request.at));
+  // Its palette and slug may have changed since the request.
+  request.layer = areas.view.layer;
   Records records;
   if (request.layer.table) {
     std::vector<std::int64_t> painted;
@@ -253,9 +257,9 @@ Result<LayerClasses> layer_classes(store::Store& store, const FeatureRequest& re
 Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& request) {
   const Model model = request.room->model();
   auto [classes, records] = STRATA_TRY(describe(store, request));
-  auto outlines =
-      query::plane_outlines(classes.areas.view, *request.room->surface().geometry(),
-                            *classes.areas.map, query::classes_of(request.layer), request.plane);
+  auto outlines = query::plane_outlines(classes.areas.view, *request.room->surface().geometry(),
+                                        *classes.areas.map,
+                                        query::classes_of(classes.areas.view.layer), request.plane);
   if (!outlines) return tl::unexpected(outlines.error());
   for (std::size_t i = 0; i < classes.classes.size(); ++i)
     if (const auto outline = outlines->find(classes.classes[i]); outline != outlines->end())

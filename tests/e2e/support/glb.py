@@ -159,6 +159,7 @@ class Glb:
         if described["type"] == "ENUM":
             enum = extension["schema"]["enums"][described["enumType"]]
             names = {each["value"]: each["name"] for each in enum["values"]}
+            assert len(set(names.values())) == len(enum["values"]) and all(names.values()), names
             numbers = numpy.frombuffer(content, NUMBERS[enum["valueType"]])
             assert len(numbers) == count
             return [names[number] for number in numbers]

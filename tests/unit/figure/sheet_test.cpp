@@ -423,7 +423,9 @@ TEST(Areas, AreDrawnWithTheirHolesAndPatterns) {
                    in_y = row / 10.0 - 10;
       const bool in_hole = in_x > 5.2 && in_y > 5.2 && in_x < 14.8 && in_y < 14.8;
       const bool outside = in_x < -0.2 || in_y < -0.2 || in_x > 20.2 || in_y > 20.2;
-      if (in_hole || outside) EXPECT_EQ(missing, 0) << square << " " << in_x << " " << in_y;
+      if (in_hole || outside) {
+        EXPECT_EQ(missing, 0) << square << " " << in_x << " " << in_y;
+      }
     }
     ++row;
     return true;

@@ -4040,8 +4040,10 @@ export interface ReportRequest {
 
 /** 3D model for other programs. All members are optional. Without members, the file contains the mesh with a texture that shows the model as it is visible by default. */
 export interface ModelExportRequest {
-  /** The layers in the texture, from bottom to top. Default: the layers that are visible by default. */
-  layers?: LayerRef[];
+  /** The texture shows the visible layers. Layers that are not listed have their default settings. */
+  layers?: LayerOverride[];
+  /** The visible surface images from bottom to top. Default: the surface images that are visible by default. */
+  looks?: LookShown[];
   /** A layer whose records or classes become features with properties. Default: no features. */
   features?: LayerRef;
   at?: At;

@@ -1,6 +1,6 @@
 // 3D models for other programs: the options, and the request to the server.
 
-import type { ModelExportRequest } from "../core/protocol.gen";
+import type { LayerOverride, LookShown, ModelExportRequest } from "../core/protocol.gen";
 
 export const kTextureFormats = ["jpeg", "png"] as const;
 /** The widths of textures that the dialog offers, in pixels. */
@@ -24,10 +24,30 @@ export const kUsualExport: ExportInput = {
   unlit: false,
 };
 
-/** Returns the request. `layers` are the layers in the texture, from bottom to top. */
-export function exportRequest(input: ExportInput, layers: readonly number[]): ModelExportRequest {
+/** What the user sees: settings of layers, and surface images. */
+export interface ShownLayers {
+  layers?: LayerOverride[];
+  looks?: LookShown[];
+}
+
+/**
+ * Returns the request. The texture shows those of all layers that are `chosen`, with the settings of
+ * the user.
+ */
+export function exportRequest(
+  input: ExportInput,
+  all: readonly number[],
+  chosen: readonly number[],
+  shown: ShownLayers,
+): ModelExportRequest {
+  const settings = new Map((shown.layers ?? []).map((each) => [Number(each.layer), each]));
   return {
-    layers: [...layers],
+    layers: all.map((layer) => ({
+      ...settings.get(layer),
+      layer,
+      visible: chosen.includes(layer),
+    })),
+    ...(shown.looks ? { looks: shown.looks } : {}),
     ...(input.features === null ? {} : { features: input.features }),
     ...(input.size === null ? {} : { texture_size: input.size }),
     texture_format: input.format,

@@ -13,7 +13,7 @@ export interface MarkSight {
   readonly measures: Measures;
   /** Returns the surface along a drawn path. */
   along(path: readonly Point[]): Promise<Step[]>;
-  /** Returns the surface at a drawn point, or null if there is none. */
+  /** Returns the surface at a drawn point, or null off the surface. */
   at(point: Point): Promise<MarkPlace | null>;
 }
 
@@ -24,7 +24,7 @@ export interface SightHost {
 }
 
 const kMostPoints = 1000; // of a path in the contract
-const kOneStep_mm = 1e9; // longer than any part of a path
+const kOneStepMm = 1e9; // longer than any part of a path
 
 const profile = async (
   { api, model }: SightHost,
@@ -58,7 +58,7 @@ export function sightOnSheet(
 ): MarkSight {
   let step = mmPerPixel;
   const samples = (path: Point[]): Promise<readonly ProfileSample[]> =>
-    profile(host, { unrolled: { ...sheet, path }, step_mm: kOneStep_mm, layers: [] });
+    profile(host, { unrolled: { ...sheet, path }, step_mm: kOneStepMm, layers: [] });
   const mmPerUnit = metresPer(host.model.unit) * 1000;
   return {
     measures: { pixelAt: () => step / mmPerUnit, scale: 1 },

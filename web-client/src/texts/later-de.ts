@@ -68,10 +68,10 @@ export const laterTexts = {
     lead: "Erstellt eine GLB-Datei (glTF 2.0) für 3D-Betrachter und Programme wie Blender und Cesium. Längen sind in Metern.",
     layers: "Ebenen in der Textur",
     layers_hint:
-      "Die Textur zeigt den Scan, seine sichtbaren Bilder und diese Ebenen in ihren Farben.",
+      "Die Textur zeigt den Scan, die Oberflächenbilder, die Sie sehen, und diese Ebenen mit ihren Farben und ihrer Deckkraft.",
     no_layers: "Dieses Modell hat keine Ebenen.",
     visible_layers: "Die sichtbaren Ebenen auswählen",
-    features: "Objekte mit Eigenschaften",
+    features: "Features mit Eigenschaften",
     features_hint:
       "Die Datensätze oder Klassen dieser Ebene, mit Namen, Flächen und Spalten. Programme, die EXT_mesh_features unterstützen, zeigen sie.",
     no_features: "Keine",

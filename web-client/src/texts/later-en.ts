@@ -66,7 +66,7 @@ export const laterTexts = {
     lead: "Creates a GLB file (glTF 2.0) for 3D viewers and for programs such as Blender and Cesium. Lengths are in meters.",
     layers: "Layers in the texture",
     layers_hint:
-      "The texture shows the scan, its visible surface images and these layers in their colors.",
+      "The texture shows the scan, the surface images that you see, and these layers with their colors and opacities.",
     no_layers: "This model has no layers.",
     visible_layers: "Select the visible layers",
     features: "Features with properties",

@@ -68,7 +68,7 @@ export const laterTexts = {
     lead: "Crea un archivo GLB (glTF 2.0) para visores 3D y programas como Blender y Cesium. Las longitudes están en metros.",
     layers: "Capas en la textura",
     layers_hint:
-      "La textura muestra el escaneo, sus imágenes visibles y estas capas con sus colores.",
+      "La textura muestra el escaneo, las imágenes de la superficie que usted ve y estas capas con sus colores y opacidades.",
     no_layers: "Este modelo no tiene capas.",
     visible_layers: "Seleccionar las capas visibles",
     features: "Elementos con propiedades",

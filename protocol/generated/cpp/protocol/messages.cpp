@@ -4985,6 +4985,7 @@ nlohmann::json to_json(const ReportRequest& value) {
 
 void read(const nlohmann::json& json, ModelExportRequest& value) {
   read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "looks", value.looks);
   read_optional_member(json, "features", value.features);
   read_optional_member(json, "at", value.at);
   read_optional_member(json, "texture_size", value.texture_size);
@@ -4995,6 +4996,7 @@ void read(const nlohmann::json& json, ModelExportRequest& value) {
 nlohmann::json to_json(const ModelExportRequest& value) {
   nlohmann::json json = nlohmann::json::object();
   write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "looks", value.looks);
   write_optional_member(json, "features", value.features);
   write_optional_member(json, "at", value.at);
   write_optional_member(json, "texture_size", value.texture_size);

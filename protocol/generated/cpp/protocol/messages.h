@@ -4024,8 +4024,11 @@ nlohmann::json to_json(const ModelExportRequestTextureFormat& value);
 
 // 3D model for other programs. All members are optional. Without members, the file contains the mesh with a texture that shows the model as it is visible by default.
 struct ModelExportRequest {
-  // The layers in the texture, from bottom to top. Default: the layers that are visible by default.
-  std::optional<std::vector<LayerRef>> layers;
+  // The texture shows the visible layers. Layers that are not listed have their default settings.
+  std::optional<std::vector<LayerOverride>> layers;
+  // The visible surface images from bottom to top. Default: the surface images that are visible by
+  // default.
+  std::optional<std::vector<LookShown>> looks;
   // A layer whose records or classes become features with properties. Default: no features.
   std::optional<LayerRef> features;
   std::optional<At> at;

@@ -159,8 +159,10 @@ class TableWriter {
     if (has_all(choices.values)) {
       description["required"] = true;
     } else {
-      values.push_back({{"name", ""}, {"value", kNoChoice}});
-      description["noData"] = "";
+      std::string none = "No data";  // a name may not be empty
+      while (std::ranges::find(choices.names, none) != choices.names.end()) none += "_";
+      values.push_back({{"name", none}, {"value", kNoChoice}});
+      description["noData"] = none;
     }
     const std::string type = enum_types_.of(name);
     enums_[type] = {{"name", name}, {"valueType", "UINT16"}, {"values", std::move(values)}};

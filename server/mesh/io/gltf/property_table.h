@@ -38,10 +38,12 @@ struct PropertyTable {
 // - Numbers are FLOAT64. A missing number is kNoNumber, the `noData` of the property.
 // - Flags are BOOLEAN. If one is missing, they are an ENUM of `false` and `true`.
 // - Texts are STRING. A missing text is empty, the `noData` of the property.
-// - Choices are an ENUM. The name of the value for a missing choice is empty.
+// - Choices are an ENUM. The name of the value for a missing choice is "No data", the `noData` of
+// the
+//   property.
 //
-// A property without any value is omitted. Names become valid and unique identifiers. The name
-// itself is the readable name of the property.
+// A property without any value is omitted. Names become valid and unique identifiers. The readable
+// name of a property also contains the name, if the identifier differs from it.
 PropertyTable property_table(const std::string& name, std::size_t count,
                              const std::vector<FeatureProperty>& properties,
                              std::size_t first_view);

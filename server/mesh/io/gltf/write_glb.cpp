@@ -27,6 +27,8 @@ constexpr std::size_t kNormalOffset = 3 * sizeof(float), kUvOffset = 6 * sizeof(
 // The required alignment of properties with 64 bits. All views have it.
 constexpr std::size_t kAlignment = 8;
 constexpr std::size_t kPieceBytes = 1u << 18;
+constexpr std::size_t kMaxBytes = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kMaxOtherBytes = std::size_t{1} << 30;  // textures and features
 
 std::size_t aligned(std::size_t bytes) {
   return (bytes + kAlignment - 1) / kAlignment * kAlignment;
@@ -271,13 +273,22 @@ bool put_mesh(const Geometry& geometry, Output& out) {
 
 }  // namespace
 
+Result<void> check_glb_size(const Geometry& geometry) {
+  if (kVertexBytes * geometry.vertices.size() + sizeof(std::uint32_t) * geometry.indices.size() <=
+      kMaxBytes - kMaxOtherBytes)
+    return {};
+  return fail(ErrorCode::too_large, "Model too large",
+              "The mesh has more than 3 GiB, and GLB files can have at most 4 GiB. Import the scan "
+              "with fewer triangles, or get the mesh as `vertices.ply`.");
+}
+
 Result<std::uint64_t> write_glb(const GlbModel& model, const std::filesystem::path& file,
                                 Progress& progress) {
   progress.report(0, "Writing the file");
   const Document document(model);
   const std::string text = document.text();
   const std::size_t bytes = kHeaderBytes + 2 * kChunkBytes + text.size() + document.buffer_bytes();
-  if (bytes > std::numeric_limits<std::uint32_t>::max())
+  if (bytes > kMaxBytes)
     return fail(ErrorCode::too_large, "Model too large",
                 "The file would be larger than 4 GiB, which GLB files cannot be. Choose a smaller "
                 "texture.");

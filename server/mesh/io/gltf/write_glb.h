@@ -45,6 +45,10 @@ struct GlbModel {
   std::optional<GlbFeatures> features;
 };
 
+// Returns `too_large` if a GLB file cannot contain the mesh and the usual textures, because it can
+// have at most 4 GiB.
+Result<void> check_glb_size(const Geometry& geometry);
+
 // Writes the model as a GLB file (glTF 2.0) and returns its size. Positions are those of
 // Geometry::vertices, in model space and in the unit of the model, as 32-bit floats. The matrix of
 // the node, in double precision, scales them to meters, rotates the model's up direction to +y and

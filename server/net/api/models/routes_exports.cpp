@@ -8,6 +8,7 @@
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/at_field.h"
+#include "net/serialization/view_settings_serialization.h"
 #include "net/transport/server_options.h"
 #include "room/edits.h"
 #include "room/layers.h"
@@ -17,33 +18,25 @@
 namespace strata::net {
 namespace {
 
-Result<std::vector<Layer>> layers_of(const room::Room& room,
-                                     const protocol::ModelExportRequest& body) {
-  if (body.layers) {
-    std::vector<std::string> refs;
-    for (const auto& ref : *body.layers) refs.push_back(protocol::to_ref(ref));
-    return find_layers(room, refs, "layers");
-  }
-  std::vector<Layer> layers = room.layers().all();
-  std::erase_if(layers, [](const Layer& layer) { return !layer.visible; });
-  room::sort_as_shown(layers, room::ViewSettings{});
-  return layers;
-}
-
 Result<app::ModelExport> read_export(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::ModelExportRequest>(request));
   app::ModelExport read;
   read.room = STRATA_TRY(open_room(context, request));
   STRATA_TRY(check_source_download(request, read.room->model()));
   read.role = request.role();
-  read.layers = STRATA_TRY(layers_of(*read.room, body));
+  read.shown = STRATA_TRY(view_settings(
+      *read.room, body.layers.value_or(std::vector<protocol::LayerOverride>{}), body.looks, {}));
+  read.layers = read.room->layers().all();
+  std::erase_if(read.layers, [&](const Layer& layer) {
+    return !read.shown.of(layer.id).visible.value_or(layer.visible);
+  });
+  room::sort_as_shown(read.layers, read.shown);
   if (body.features) {
     auto layer = read.room->layers().find(protocol::to_ref(*body.features));
     if (!layer) return at_field(layer.error(), "features");
     read.features = std::move(*layer);
   }
-  const auto at = STRATA_TRY(find_sequence(context, *read.room, body.at));
-  read.at = at.value_or(read.room->edits().durable_state().sequence);
+  read.at = STRATA_TRY(find_sequence(context, *read.room, body.at));
   if (body.texture_size)
     read.texture_size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(*body.texture_size)));
   read.texture_format = body.texture_format == protocol::ModelExportRequestTextureFormat::png
@@ -57,7 +50,7 @@ Result<app::ModelExport> read_export(const RouteContext& context, const Request&
 Result<Response> answer_export(const RouteContext& context, const Request& request) {
   auto read = STRATA_TRY(read_export(context, request));
   const auto room = read.room;
-  const std::int64_t sequence = read.at;
+  const std::int64_t sequence = read.at.value_or(room->edits().durable_state().sequence);
   return respond_with_file(
       context, request, *room, sequence, [&context, read = std::move(read)](Progress& progress) {
         return app::export_model(context, read, context.options.upload_dir, progress);

@@ -420,7 +420,6 @@ export const particulars = {
     ...json({
       by_name: {
         texture_size: one(512, 600, 100),
-        layers: one([], ["cracks"], ["nothing"]),
         features: one("cracks", "units", "nothing"),
       },
     }),

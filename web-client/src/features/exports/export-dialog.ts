@@ -32,7 +32,7 @@ export class StrataExportDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "jobs", "layers");
+    followSession(this, "jobs", "layers", "views");
   }
 
   static override styles = [
@@ -101,9 +101,9 @@ export class StrataExportDialog extends LitElement {
   private layers(): TemplateResult {
     const all = [...this.session.layers.all].reverse(); // in the order of the layer list
     const chosen = this.chosenLayers;
-    return html`<div class="group" role="group" aria-labelledby="layers">
+    return html`<div class="group" role="group" aria-labelledby="layers" aria-describedby="layers_hint">
       <span class="caption" id="layers">${words.layers}</span>
-      <p class="hint">${all.length > 0 ? words.layers_hint : words.no_layers}</p>
+      <p class="hint" id="layers_hint">${all.length > 0 ? words.layers_hint : words.no_layers}</p>
       <div class="layers">
         ${all.map(
           (layer) =>
@@ -114,8 +114,8 @@ export class StrataExportDialog extends LitElement {
         )}
       </div>
       ${
-        this._input.layers
-          ? html`<button type="button" class="link" @click=${() => this.choose({ layers: null })}>${words.visible_layers}</button>`
+        all.length > 0
+          ? html`<button type="button" class="link" ?disabled=${this._input.layers === null} @click=${() => this.choose({ layers: null })}>${words.visible_layers}</button>`
           : nothing
       }
     </div>`;
@@ -123,7 +123,7 @@ export class StrataExportDialog extends LitElement {
 
   private features(): TemplateResult {
     const all = [...this.session.layers.all].reverse();
-    const { features } = this._input;
+    const features = this.featureLayer;
     const choose = (event: Event): void => {
       const { value } = event.target as HTMLSelectElement;
       this.choose({ features: value === "" ? null : Number(value) });
@@ -184,6 +184,11 @@ export class StrataExportDialog extends LitElement {
     </div>`;
   }
 
+  /** The layer of the features. It may have been deleted since it was chosen. */
+  private get featureLayer(): number | null {
+    return this.session.layers.find(this._input.features)?.id ?? null;
+  }
+
   /** The ids of the layers in the texture, from bottom to top. */
   private get chosenLayers(): number[] {
     const { layers } = this.session;
@@ -211,7 +216,9 @@ export class StrataExportDialog extends LitElement {
     event.preventDefault();
     if (!this._file.isFree) return;
     const { exports, model } = this.session;
-    const request = exportRequest(this._input, this.chosenLayers);
+    const all = this.session.layers.all.map(({ id }) => id);
+    const input = { ...this._input, features: this.featureLayer };
+    const request = exportRequest(input, all, this.chosenLayers, this.session.views.content());
     const lang = pageLanguage(pageLocale(), []);
     this._problem = "";
     void this._file.make(

@@ -8,9 +8,21 @@ import { LayerJobs } from "../../../src/session/layer-jobs";
 import { texts } from "../../../src/texts";
 
 describe("The request for a 3D model", () => {
-  it("has the visible layers, and leaves the size to the server", () => {
-    expect(exportRequest(kUsualExport, [3, 5])).toEqual({
-      layers: [3, 5],
+  it("shows the chosen layers as the user sees them, and leaves the size to the server", () => {
+    const shown = {
+      layers: [
+        { layer: 5, visible: false, opacity: 0.5 },
+        { layer: 4, visible: true },
+      ],
+      looks: [{ look: "infrared" }],
+    };
+    expect(exportRequest(kUsualExport, [3, 4, 5], [3, 5], shown)).toEqual({
+      layers: [
+        { layer: 3, visible: true },
+        { layer: 4, visible: false },
+        { layer: 5, visible: true, opacity: 0.5 },
+      ],
+      looks: [{ look: "infrared" }],
       texture_format: "jpeg",
       unlit: false,
     });
@@ -18,8 +30,8 @@ describe("The request for a 3D model", () => {
 
   it("has the chosen features, size, format and light", () => {
     const input = { layers: [5], features: 7, size: 4096, format: "png", unlit: true } as const;
-    expect(exportRequest(input, [5])).toEqual({
-      layers: [5],
+    expect(exportRequest(input, [5], [5], {})).toEqual({
+      layers: [{ layer: 5, visible: true }],
       features: 7,
       texture_size: 4096,
       texture_format: "png",
@@ -48,7 +60,12 @@ describe("The 3D models of the open model", () => {
     });
     const files = new FileJobs(api, new LayerJobs(api, "9", () => {}));
     const exports = new ModelExports(api, "9", files);
-    const key = await exports.make("3D model: Pot", "Ready", exportRequest(kUsualExport, []), "es");
+    const key = await exports.make(
+      "3D model: Pot",
+      "Ready",
+      exportRequest(kUsualExport, [], [], {}),
+      "es",
+    );
     expect(files.awaited).toBe(key);
     expect(calls[0]).toMatchObject({
       path: "/api/v1/models/9/exports?lang=es",
