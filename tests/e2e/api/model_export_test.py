@@ -361,7 +361,7 @@ def test_a_job_makes_the_file_and_can_be_cancelled(server):
 def test_wrong_requests_are_refused(server):
     server.ok("POST", M + "/layers", {"name": "Empty", "type": "u8", "resolution": 2048})
     for wish, status, field in (
-        ({"layers": [{"layer": "nothing"}]}, 422, "layers"),
+        ({"layers": [{"layer": "nothing"}]}, 404, "layers[0].layer"),
         ({"features": "nothing"}, 422, "features"),
         ({"features": "empty", "texture_size": 512}, 422, "features"),
         ({"texture_size": 100}, 422, "texture_size"),

@@ -1,4 +1,4 @@
-// The dialog for 3D models: a GLB file with the chosen layers in its texture and the records of a
+// The dialog for 3D models: a GLB file with the chosen layers in its texture and the classes of a
 // layer as features is made, saved and named.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -37,13 +37,13 @@ async function make() {
   };
 }
 
-let browser, page, server, records;
+let browser, page, server, classes;
 
 test.beforeAll(async ({ server: started, desk }) => {
   [browser, page, server] = [desk, desk.page, started];
   await server.json("PATCH", base, { scale_verified: true });
   const { layers } = await server.json("GET", `${base}/layers`);
-  records = layers.find(({ table }) => table !== undefined);
+  classes = layers.find(({ palette }) => palette.mode === "categorical");
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
@@ -63,8 +63,8 @@ test("a file has the visible layers in its texture", async () => {
   await shot("saved");
 });
 
-test("a file has the records of a layer as features", async () => {
-  await dialog().locator('select[name="features"]').selectOption(String(records.id));
+test("a file has the classes of a layer as features", async () => {
+  await dialog().locator('select[name="features"]').selectOption(String(classes.id));
   await dialog().getByRole("radio", { name: words.export_dialog.formats.png }).click();
   await dialog().locator('input[name="unlit"]').check();
   const { json } = await make();
@@ -80,7 +80,7 @@ test("a file has the records of a layer as features", async () => {
 
 test("the settings stay for the next file", async () => {
   await open();
-  assert.equal(await dialog().locator('select[name="features"]').inputValue(), String(records.id));
+  assert.equal(await dialog().locator('select[name="features"]').inputValue(), String(classes.id));
   await dialog().locator('select[name="features"]').selectOption("");
   await page.keyboard.press("Escape");
 });

@@ -170,6 +170,10 @@ test("a line and a point belong to a record, and are on the surface", async () =
   await drag(ada, [0.6, 0.5]);
   await wait_for(async () => (await marks("places")).length === 1, "the point");
   await dialog(ada).locator('figure[aria-busy="false"] img').waitFor();
+  // The picture does not show them, so they stay over it.
+  const drawn = dialog(ada).locator("strata-picture-canvas svg");
+  await drawn.locator("polyline").waitFor();
+  assert.equal(await drawn.locator("circle").count(), 1);
   await shot(ada, "line");
   const places = [...(await marks("cracks")), ...(await marks("places"))].flatMap(
     ({ coordinates }) => coordinates,
@@ -186,6 +190,7 @@ test("a line and a point belong to a record, and are on the surface", async () =
   assert.ok(Math.abs(first[2] - last[2]) > 1, "the line goes down");
   await dialog(ada).getByRole("button", { name: words.model.undo, exact: true }).click();
   await wait_for(async () => (await marks("places")).length === 0, "the undone point");
+  await wait_for(async () => (await drawn.locator("circle").count()) === 0, "no point");
   await dialog(ada).locator('select[name="layer"]').selectOption("Test");
   await radio(ada, words.tools.brush).click();
 });

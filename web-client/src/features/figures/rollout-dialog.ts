@@ -90,6 +90,7 @@ export class StrataRolloutDialog extends LitElement {
     this._input = session.figures.draft.rollout ?? kNewRollout;
     this._tools.start();
     this._painting = new PicturePainting({
+      showsMarks: () => false,
       api: session.api,
       modelId: session.modelId,
       target: (erases) => session.painting.areaTarget(erases),

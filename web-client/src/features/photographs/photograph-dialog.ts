@@ -83,6 +83,7 @@ export class StrataPhotographDialog extends LitElement {
     const { session } = this;
     this._tools.start();
     this._painting = new PicturePainting({
+      showsMarks: () => true,
       api: session.api,
       modelId: session.modelId,
       target: (erases) => session.painting.areaTarget(erases),

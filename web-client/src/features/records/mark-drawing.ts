@@ -44,7 +44,7 @@ const metresOf = (lines: readonly MarkPlace[][], { unit }: Model): number =>
 export class MarkDrawing {
   // ids of the chosen columns, by table and kind
   private readonly _chosen = new Map<string, number>();
-  private _work: Promise<void> = Promise.resolve(); // drawings are saved one at a time
+  private _work: Promise<unknown> = Promise.resolve(); // drawings are saved one at a time
   private _notice = 0; // the notice that offers to undo the latest drawing
   private readonly _measure: LineMeasure<Step>; // the measured length of the current line
 
@@ -94,10 +94,10 @@ export class MarkDrawing {
     this._measure.follow(outline);
   }
 
-  /** Resolves when the line is saved or refused. `seen` is the 3D view by default. */
-  finishLine(path: readonly Point[], seen?: MarkSight): Promise<void> {
+  /** Returns whether the line was saved. `seen` is the 3D view by default. */
+  finishLine(path: readonly Point[], seen?: MarkSight): Promise<boolean> {
     const target = this.target("line");
-    if (!target) return Promise.resolve();
+    if (!target) return Promise.resolve(false);
     const sight = seen ?? this.sight(target.model);
     return this.queue(async () => {
       const steps = await sight.along(path);
@@ -105,7 +105,7 @@ export class MarkDrawing {
         this.nearestAlong(target.model, from, to, step),
       );
       const cut = lines.length > 1 ? words.line_cut(lines.length) : "";
-      await this.add(
+      return this.add(
         target,
         lines,
         (name) => words.line_drawn(formatLength(metresOf(lines, target.model)), name),
@@ -114,13 +114,14 @@ export class MarkDrawing {
     });
   }
 
-  setPoint(at: Point, seen?: MarkSight): Promise<void> {
+  /** Returns whether the point was saved. */
+  setPoint(at: Point, seen?: MarkSight): Promise<boolean> {
     const target = this.target("point");
-    if (!target) return Promise.resolve();
+    if (!target) return Promise.resolve(false);
     const sight = seen ?? this.sight(target.model);
     return this.queue(async () => {
       const place = await sight.at(at);
-      await this.add(target, place ? [[place]] : [], words.point_set);
+      return this.add(target, place ? [[place]] : [], words.point_set);
     });
   }
 
@@ -173,9 +174,13 @@ export class MarkDrawing {
     return sightThrough({ api: this._api, model }, this._host.view.camera.message(), scale);
   }
 
-  private queue(work: () => Promise<void>): Promise<void> {
-    this._work = this._work.then(work).catch((error: unknown) => notices.error(error));
-    return this._work;
+  private queue(work: () => Promise<boolean>): Promise<boolean> {
+    const saved = this._work.then(work).catch((error: unknown) => {
+      notices.error(error);
+      return false;
+    });
+    this._work = saved;
+    return saved;
   }
 
   private async add(
@@ -183,10 +188,10 @@ export class MarkDrawing {
     places: MarkPlace[][],
     told: (name: string) => string,
     cut = "",
-  ): Promise<void> {
+  ): Promise<boolean> {
     if (places.length === 0) {
       notices.show("info", words.missed);
-      return;
+      return false;
     }
     const marks = places.map((coordinates) => ({ model: model.id, coordinates }));
     const changed = await this.change(table, key, ({ version, values }) =>
@@ -204,6 +209,7 @@ export class MarkDrawing {
     this._notice = cut
       ? notices.show("problem", cut, what, link)
       : notices.show("success", what, "", link);
+    return true;
   }
 
   /** Changes the current version of the record, which keeps the marks of other users. */
@@ -223,11 +229,12 @@ export class MarkDrawing {
   }
 
   /** Undoes only the change that the notice reports, and not a later one. */
-  private async takeBack(table: number, version: number): Promise<void> {
+  private async takeBack(table: number, version: number): Promise<boolean> {
     const {
       edits: [newest],
     } = await this._api.json("GET /tables/{table}/edits", { path: { table }, query: { limit: 1 } });
     if (newest?.sequence === version) await this._host.tables.undo(table);
     else notices.show("info", words.changed_since);
+    return true;
   }
 }

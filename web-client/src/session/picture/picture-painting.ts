@@ -13,6 +13,8 @@ export interface PictureTarget {
 }
 
 export interface PicturePaintingHost {
+  /** Whether the picture shows lines and points. Otherwise, those that are drawn stay over it. */
+  showsMarks(): boolean;
   readonly api: Api;
   readonly modelId: string;
   /** Returns null if nothing can be painted, after showing the reason to the user. */
@@ -30,6 +32,9 @@ export class PicturePainting {
   waiting: readonly DrawnPart[] = [];
   private readonly _edits: (() => Promise<void>)[] = [];
   private readonly _made = new Set<PicturePart>();
+  // The saved lines and points of this picture, if it does not show them itself.
+  private _marks: DrawnPart[] = [];
+  private _undoneMarks: DrawnPart[] = [];
   private _isSending = false;
 
   constructor(private readonly _host: PicturePaintingHost) {}
@@ -44,21 +49,44 @@ export class PicturePainting {
   ): void {
     const target = this._host.target(this.erases);
     if (!target) return;
-    this.mark({ part, color }, async () => {
+    this.send({ part, color }, async () => {
       const edit = await send(target);
       this._host.showChange(edit?.texels_changed, edit?.area_m2);
     });
   }
 
-  /** Sends a part that is not an edit of a layer. */
-  mark({ part, color }: DrawnPart, send: () => Promise<void>): void {
-    this.waiting = [...this.waiting, { part, color }];
+  /** Draws a line or a point of a record. `send` returns whether it was saved. */
+  mark(drawn: DrawnPart, send: () => Promise<boolean>): void {
+    this._undoneMarks = [];
+    this.send(drawn, async () => {
+      if (!(await send())) this.forget([drawn.part]);
+      else if (!this._host.showsMarks()) this._marks.push(drawn);
+    });
+  }
+
+  /** Undoes or redoes this user's newest line or point, which `send` does on the server. */
+  travelMarks(way: "undo" | "redo", send: () => Promise<void>): void {
+    this.add(async () => {
+      await send();
+      const [from, to] =
+        way === "undo" ? [this._marks, this._undoneMarks] : [this._undoneMarks, this._marks];
+      const drawn = from.pop();
+      if (!drawn) return;
+      to.push(drawn);
+      if (way === "undo") this.forget([drawn.part]);
+      else this.waiting = [...this.waiting, drawn];
+    });
+  }
+
+  /** Shows a part until it is in the picture. */
+  private send(drawn: DrawnPart, send: () => Promise<void>): void {
+    this.waiting = [...this.waiting, drawn];
     this.add(async () => {
       try {
         await send();
-        this._made.add(part);
+        this._made.add(drawn.part);
       } catch (error) {
-        this.forget([part]);
+        this.forget([drawn.part]);
         throw error;
       }
     });
@@ -81,12 +109,15 @@ export class PicturePainting {
 
   /** Forgets the parts of an earlier picture. They are still sent. */
   leavePicture(): void {
+    this._marks = [];
+    this._undoneMarks = [];
     this.forget(this.waiting.map(({ part }) => part));
   }
 
   /** Draws the picture again, and forgets the parts that it then shows. */
   async redraw(): Promise<void> {
-    const made = [...this._made];
+    const kept = this._marks.map(({ part }) => part);
+    const made = [...this._made].filter((part) => !kept.includes(part));
     if (await this._host.redraw()) this.forget(made);
     this._host.changed();
   }
@@ -96,14 +127,13 @@ export class PicturePainting {
     for (const part of parts) this._made.delete(part);
   }
 
-  /** Sends an edit after the earlier ones, and then draws the picture again. */
-  add(edit: () => Promise<void>): void {
+  private add(edit: () => Promise<void>): void {
     this._edits.push(edit);
     this._host.changed();
-    if (!this._isSending) void this.send();
+    if (!this._isSending) void this.sendAll();
   }
 
-  private async send(): Promise<void> {
+  private async sendAll(): Promise<void> {
     this._isSending = true;
     for (let edit = this._edits.shift(); edit; edit = this._edits.shift()) {
       try {

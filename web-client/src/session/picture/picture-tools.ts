@@ -190,7 +190,7 @@ export class PictureTools {
   private travel(way: "undo" | "redo"): void {
     const { layers, marks } = this._host.session();
     const painting = this._host.painting();
-    if (isMark(this.chosen)) painting.add(() => marks[way]());
+    if (isMark(this.chosen)) painting.travelMarks(way, () => marks[way]());
     else if (layers.selected) painting[way](layers.selected);
   }
 

@@ -18,12 +18,14 @@ class FakeServer {
   changes: unknown[][] = [];
   redraws = 0;
   isShown = true;
+  showsMarks = true;
   target: { layer: Layer; paint: { value: number } | { erase: true } } | null = {
     layer,
     paint: { value: 3 },
   };
 
   readonly painting = new PicturePainting({
+    showsMarks: () => this.showsMarks,
     api: {
       json: (call: string, options: { body: unknown; path: unknown }) => this.ask(call, options),
       send: (call: string, options: { body: unknown; path: unknown }) => this.ask(call, options),
@@ -59,15 +61,35 @@ describe("painting on a picture", () => {
   it("keeps a mark until it is saved and drawn, and reports no change of a layer", async () => {
     const server = new FakeServer();
     const mark: DrawnPart = { part: { point: [1, 2] }, color: "red" };
-    let save = (): void => {};
+    let save = (_saved: boolean): void => {};
     server.painting.mark(mark, () => new Promise((done) => (save = done)));
-    server.painting.mark(mark, () => Promise.reject(new Error("no surface")));
+    server.painting.mark(dab(3), () => Promise.reject(new Error("no surface")));
     expect(server.painting.waiting).toHaveLength(2);
-    save();
+    save(true);
     await settled();
     expect(server.painting.waiting).toEqual([]);
     expect([server.redraws, server.changes]).toEqual([1, []]);
     expect(server.failures).toEqual([new Error("no surface")]);
+  });
+
+  it("keeps marks over a picture that does not show them, until they are undone", async () => {
+    const server = new FakeServer();
+    server.showsMarks = false;
+    const mark: DrawnPart = { part: { point: [1, 2] }, color: "red" };
+    server.painting.mark(mark, () => Promise.resolve(true));
+    server.painting.mark(dab(3), () => Promise.resolve(false)); // not saved
+    await settled();
+    expect(server.painting.waiting).toEqual([mark]);
+    const travels = (): Promise<void> => Promise.resolve();
+    server.painting.travelMarks("undo", travels);
+    server.painting.travelMarks("undo", travels); // of an earlier change
+    await settled();
+    expect(server.painting.waiting).toEqual([]);
+    server.painting.travelMarks("redo", travels);
+    await settled();
+    expect(server.painting.waiting).toEqual([mark]);
+    server.painting.leavePicture();
+    expect(server.painting.waiting).toEqual([]);
   });
 
   it("sends one edit after the other, and then draws the picture once", async () => {
