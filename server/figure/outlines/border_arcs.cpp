@@ -30,8 +30,8 @@ class Tracer {
         if (sides_ > most_sides_)
           return fail(ErrorCode::invalid, "Too many outlines",
                       "The areas of a layer consist of too many small pieces for outlines. Choose "
-                      "pixels for the areas, a larger tolerance, or smaller paper.",
-                      "areas");
+                      "a larger tolerance, smaller paper, or a figure without outlines.",
+                      "tolerance_mm");
       }
     return std::move(graph_);
   }

@@ -20,7 +20,8 @@ class Faces {
 
   Result<LabelFaces> find(const Progress& progress) {
     STRATA_TRY(number_all(progress));
-    if (drop_small()) {
+    const bool has_dropped = STRATA_TRY(drop_small(progress));
+    if (has_dropped) {
       faces_.label.resize(1);
       sizes_.resize(1);
       first_cells_.resize(1);
@@ -39,7 +40,7 @@ class Faces {
       const auto number = static_cast<std::uint32_t>(faces_.label.size());
       faces_.label.push_back(grid_.labels[cell]);
       first_cells_.push_back(cell);
-      flood(cell, number);
+      flood(cell, number, grid_.labels.size());
       sizes_.push_back(flooded_.size());
     }
     return {};
@@ -55,12 +56,13 @@ class Faces {
     if (cell + columns < grid_.labels.size()) visit(cell + columns);
   }
 
-  // Gives the piece that contains the cell this number. `flooded_` then contains its cells.
-  void flood(std::size_t cell, std::uint32_t number) {
+  // Gives the piece that contains the cell this number. `flooded_` then contains its cells. Stops
+  // when it has at least `most` cells.
+  void flood(std::size_t cell, std::uint32_t number, std::size_t most) {
     const std::uint32_t label = grid_.labels[cell];
     flooded_.assign(1, cell);
     faces_.face[cell] = number;
-    for (std::size_t i = 0; i < flooded_.size(); ++i)
+    for (std::size_t i = 0; i < flooded_.size() && flooded_.size() < most; ++i)
       for_each_neighbor(flooded_[i], [&](std::size_t next) {
         if (faces_.face[next] == number || grid_.labels[next] != label) return;
         faces_.face[next] = number;
@@ -69,14 +71,16 @@ class Faces {
   }
 
   // Returns whether a label has changed.
-  bool drop_small() {
+  Result<bool> drop_small(const Progress& progress) {
     std::vector<std::uint32_t> small;
     for (std::uint32_t face = 1; face < sizes_.size(); ++face)
       if (sizes_[face] < smallest_) small.push_back(face);
     std::ranges::stable_sort(small, {}, [&](std::uint32_t face) { return sizes_[face]; });
     for (const std::uint32_t face : small) {
-      // A smaller neighbor may have got the label of this face since then.
-      flood(first_cells_[face], static_cast<std::uint32_t>(sizes_.size()));
+      if (progress.cancelled()) return cancelled_problem();
+      // This face may be a part of a larger one since then. The size of that one does not matter,
+      // and a grid can have very many small faces in a large one.
+      flood(first_cells_[face], static_cast<std::uint32_t>(sizes_.size()), smallest_);
       sizes_.push_back(0);  // makes the number of the next flood a new one
       if (flooded_.size() >= smallest_) continue;
       std::map<std::uint32_t, std::size_t> borders;  // number of common sides, by label

@@ -296,6 +296,24 @@ TEST(LabelOutlines, SmallPiecesBecomeAPartOfTheirNeighbor) {
   EXPECT_EQ(some.dropped_area, 1);
 }
 
+// A large area that has very many small pieces. If each of them filled the whole area, this would
+// take hours.
+TEST(LabelOutlines, NoiseHasNoSmallPieces) {
+  constexpr int kSide = 1500;
+  constexpr std::size_t kSmallest = 9;
+  std::mt19937 random(7);
+  const LabelGrid noise = grid_of(kSide, kSide, [&](int, int) -> std::uint32_t {
+    return std::uniform_int_distribution(0, 9)(random) < 7 ? 1 : 2;
+  });
+  const Progress progress;
+  const auto faces = label_faces(noise, kSmallest, progress);
+  ASSERT_TRUE(faces.has_value());
+  EXPECT_GT(faces->dropped_faces, 100'000u);
+  std::vector<std::size_t> sizes(faces->label.size());
+  for (const std::uint32_t face : faces->face) ++sizes[face];
+  for (std::size_t face = 1; face < sizes.size(); ++face) EXPECT_GE(sizes[face], kSmallest);
+}
+
 TEST(LabelOutlines, StopsWhenCancelled) {
   Progress progress;
   progress.cancel();
