@@ -7,7 +7,7 @@
 
 namespace strata::figure {
 
-// The hatch and the dots of an area. They cover the box around the area, so the area must clip
+// The hatch and the dots of an area. They cover slightly more than the area, so the area must clip
 // them. Lines and dots have fixed places on the sheet: areas with the same pattern match.
 
 struct AreaPattern {

@@ -149,22 +149,30 @@ void draw(cairo_t* context, const Mark& mark) {
   cairo_restore(context);
 }
 
-void draw_group(cairo_t* context, const Group& group) {
+void draw_group(cairo_t* context, const Group& group, const Box& drawing) {
+  cairo_save(context);
+  if (group.in_drawing) {
+    cairo_new_path(context);
+    cairo_rectangle(context, drawing.corner.x, drawing.corner.y, drawing.size.x, drawing.size.y);
+    cairo_clip(context);
+  }
   if (group.opacity < 1) cairo_push_group(context);
   for (const Item& item : group.items)
     std::visit([&](const auto& each) { draw(context, each); }, item);
   for (const Area& area : group.areas) draw(context, area);
   for (const Mark& mark : group.marks) draw(context, mark);
-  for (const Group& part : group.parts) draw_group(context, part);
-  if (group.opacity >= 1) return;
-  cairo_pop_group_to_source(context);
-  cairo_paint_with_alpha(context, group.opacity);
+  for (const Group& part : group.parts) draw_group(context, part, drawing);
+  if (group.opacity < 1) {
+    cairo_pop_group_to_source(context);
+    cairo_paint_with_alpha(context, group.opacity);
+  }
+  cairo_restore(context);
 }
 
 }  // namespace
 
 void draw_groups(cairo_t* context, const Sheet& sheet) {
-  for (const Group& group : sheet.groups) draw_group(context, group);
+  for (const Group& group : sheet.groups) draw_group(context, group, sheet.drawing);
 }
 
 }  // namespace strata::figure

@@ -52,7 +52,7 @@ std::vector<std::uint8_t> drawing_jpeg(const Picture& drawing) {
 tl::unexpected<Error> unwritable() {
   return fail(ErrorCode::storage_full, "Figure not written",
               "The server could not write the file to its disk. Free disk space, or choose a "
-              "lower resolution (dpi).");
+              "lower resolution (dpi) or, for outlines, a larger tolerance.");
 }
 
 Result<void> write_figure(const Sheet& requested, const Picture& drawing, int dpi, Format format,

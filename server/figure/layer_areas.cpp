@@ -1,6 +1,10 @@
 #include "figure/layer_areas.h"
 
-#include "core/text/number_text.h"
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <iterator>
+
 #include "figure/pattern.h"
 
 namespace strata::figure {
@@ -10,33 +14,44 @@ namespace {
 constexpr double kLine_mm = 3 * kPatternPixel, kPoint_mm = 10 * kPatternPixel,
                  kCasing_mm = 1.25 * kPatternPixel;
 
+// Returns the number with all its digits and without an exponent, because ids must be unique.
+std::string plain_number(double value) {
+  std::array<char, 400> digits{};
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed);
+  return {digits.data(), end.ptr};
+}
+
 }  // namespace
 
-Group area_group(const LayerVectors& layer) {
+Group area_group(LayerVectors layer) {
   Group group;
   group.id = "areas-" + layer.id;
-  group.name = layer.name;
+  group.name = std::move(layer.name);
   group.opacity = layer.opacity;
-  for (const ClassArea& of_class : layer.areas) {
+  group.in_drawing = true;
+  for (ClassArea& of_class : layer.areas) {
     Area area{{}, of_class.color, of_class.pattern, of_class.angle, of_class.spacing_mm};
-    for (const OutlinePolygon& polygon : of_class.polygons)
-      area.rings.insert(area.rings.end(), polygon.rings.begin(), polygon.rings.end());
+    for (OutlinePolygon& polygon : of_class.polygons)
+      std::ranges::move(polygon.rings, std::back_inserter(area.rings));
     Group& part = group.parts.emplace_back();
-    part.id = group.id + "-" + short_number(of_class.value);
-    part.name = of_class.name;
+    part.id = group.id + "-" + plain_number(of_class.value);
+    part.name = std::move(of_class.name);
     part.areas.push_back(std::move(area));
   }
   return group;
 }
 
-Group mark_group(const LayerVectors& layer) {
+Group mark_group(LayerVectors layer) {
   Group group;
   group.id = "marks-" + layer.id;
-  group.name = layer.name;
+  group.name = std::move(layer.name);
   group.opacity = layer.opacity;
-  for (const RecordMark& mark : layer.marks)
-    group.marks.push_back(
-        {mark.points, mark.color, mark.points.size() > 1 ? kLine_mm : kPoint_mm, kCasing_mm});
+  group.in_drawing = true;
+  for (RecordMark& mark : layer.marks) {
+    const double width = mark.points.size() > 1 ? kLine_mm : kPoint_mm;
+    group.marks.push_back({std::move(mark.points), mark.color, width, kCasing_mm});
+  }
   return group;
 }
 

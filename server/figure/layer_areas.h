@@ -21,6 +21,7 @@ struct ClassArea {
 // A visible part of a line or, with one point, a point of a record.
 struct RecordMark {
   std::int64_t key = 0;
+  std::string name;  // of the record
   Rgba color{};
   std::vector<glm::dvec2> points;
 };
@@ -35,7 +36,7 @@ struct LayerVectors {
 
 // Returns the areas as a group with a part for each class, and the marks as a group. Lines and
 // points have the widths that they have in pictures.
-Group area_group(const LayerVectors& layer);
-Group mark_group(const LayerVectors& layer);
+Group area_group(LayerVectors layer);
+Group mark_group(LayerVectors layer);
 
 }  // namespace strata::figure

@@ -53,6 +53,7 @@ struct Group {
   std::vector<Item> items;
   std::string name{};  // "Damage", for users who edit the file. May be empty.
   double opacity = 1;
+  bool in_drawing = false;  // whether only the part in the box of the drawing is visible
   // Drawn after the items, in this order.
   std::vector<Area> areas{};
   std::vector<Mark> marks{};

@@ -6,18 +6,22 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <set>
-#include <sstream>
+#include <unordered_map>
 
 #include "core/text/printable.h"
+#include "core/text/search_text.h"
+#include "core/text/utf8.h"
 #include "figure/pattern.h"
 #include "figure/writers.h"
 
 namespace strata::figure {
 namespace {
 
-constexpr std::size_t kMaxName = 200;  // of a DXF layer, in bytes
-constexpr int kWhite = 7;              // color number, black on a white background
+constexpr std::size_t kMaxName = 200;    // of a DXF layer, in bytes
+constexpr std::size_t kMaxString = 255;  // of extended data, in bytes
+constexpr int kWhite = 7;                // color number, black on a white background
 // The handles of objects to which others refer. Other objects have handles from kFirstFree on.
 enum Handle : unsigned {
   kBlockTable = 1,
@@ -116,26 +120,17 @@ class LayerNames {
     std::string name;
     for (const char c : plain(wanted))
       name += std::string_view("<>/\\\":;?*|=,`^").find(c) == std::string_view::npos ? c : '_';
-    if (name.size() > kMaxName) {
-      name.resize(kMaxName);
-      // not in the middle of a character
-      while (!name.empty() && (static_cast<unsigned char>(name.back()) & 0xc0) == 0x80)
-        name.pop_back();
-      if (!name.empty() && static_cast<unsigned char>(name.back()) >= 0xc0) name.pop_back();
-    }
+    name = first_bytes(name, kMaxName);
     std::string unique = name;
-    for (int number = 2; !known_.insert(folded(unique)).second; ++number)
-      unique = name + " " + std::to_string(number);
+    int& number = numbers_[case_folded(name)];
+    while (!known_.insert(case_folded(unique)).second)
+      unique = name + " " + std::to_string(++number + 1);
     return unique;
   }
 
  private:
-  static std::string folded(std::string name) {
-    for (char& c : name)
-      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return name;
-  }
   std::set<std::string> known_{"0"};
+  std::unordered_map<std::string, int> numbers_;  // the last one, by folded name
 };
 
 struct DxfLayer {
@@ -143,38 +138,41 @@ struct DxfLayer {
   std::optional<Rgba> color;  // nullopt: black or white
 };
 
+// What the header states about the rest of the file.
+struct Facts {
+  unsigned next_handle = kFirstFree;
+  glm::dvec2 low{std::numeric_limits<double>::max()};  // of all points
+  glm::dvec2 high{std::numeric_limits<double>::lowest()};
+};
+
 class DxfWriter {
  public:
-  DxfWriter(const DxfDrawing& drawing, const Progress& progress)
-      : drawing_(drawing), progress_(progress), entities_(entity_text_) {}
+  DxfWriter(const DxfDrawing& drawing, const Progress& progress, std::ostream& out)
+      : drawing_(drawing), progress_(progress), pairs_(out) {
+    LayerNames names;
+    for (const LayerVectors& layer : drawing.areas)
+      for (const ClassArea& area : layer.areas)
+        layers_.push_back({names.add(layer.name + " - " + area.name), area.color});
+    for (const LayerVectors& layer : drawing.marks)
+      if (!layer.marks.empty()) layers_.push_back({names.add(layer.name), std::nullopt});
+    if (!drawing.labels.empty()) layers_.push_back({names.add("Labels"), std::nullopt});
+  }
 
-  Result<void> write(const std::filesystem::path& path) {
-    for (const LayerVectors& layer : drawing_.areas)
-      for (const ClassArea& area : layer.areas) STRATA_TRY(add_class(layer, area));
-    for (const LayerVectors& layer : drawing_.marks)
-      if (!layer.marks.empty()) add_marks(layer);
-    if (!drawing_.labels.empty()) add_labels();
-    std::ofstream out(path, std::ios::binary);
-    Pairs pairs(out);
-    // All handles are known only now, but the header states the next one.
-    std::ostringstream tables;
-    Pairs table_pairs(tables);
-    write_tables(table_pairs);
-    write_header(pairs);
-    out << tables.str();
-    write_blocks(pairs);
-    begin_section(pairs, "ENTITIES");
-    out << entity_text_.str();
-    pairs.text(0, "ENDSEC");
-    write_objects(pairs);
-    pairs.text(0, "EOF");
-    out.close();
-    if (!out) return unwritable();
-    return {};
+  // Returns the facts of the written file.
+  Result<Facts> write(const Facts& stated) {
+    write_header(stated);
+    write_tables();
+    write_blocks();
+    begin_section("ENTITIES");
+    STRATA_TRY(write_entities());
+    pairs_.text(0, "ENDSEC");
+    write_objects();
+    pairs_.text(0, "EOF");
+    return facts_;
   }
 
  private:
-  unsigned new_handle() { return next_++; }
+  unsigned new_handle() { return facts_.next_handle++; }
   glm::dvec2 on_object(const glm::dvec2& on_sheet) const {
     const glm::dvec2 from_corner = (on_sheet - drawing_.area.corner) * drawing_.scale;
     return drawing_.top_left + glm::dvec2(from_corner.x, -from_corner.y);
@@ -182,60 +180,63 @@ class DxfWriter {
 
   // ── entities ───────────────────────────────────────────────────────────────────────────────────
 
-  unsigned begin_entity(const char* type, const std::string& layer) {
-    const unsigned handle = new_handle();
-    entities_.text(0, type);
-    entities_.handle(5, handle);
-    entities_.handle(330, kModelSpace);
-    entities_.text(100, "AcDbEntity");
-    entities_.text(8, layer);
-    return handle;
-  }
-  void opacity(double value) {
-    if (value < 1) entities_.whole(440, 0x02000000 | std::lround(255 * value));
+  Result<void> write_entities() {
+    auto layer_of_file = layers_.begin();
+    for (const LayerVectors& layer : drawing_.areas)
+      for (const ClassArea& area : layer.areas)
+        STRATA_TRY(add_class((layer_of_file++)->name, layer, area));
+    for (const LayerVectors& layer : drawing_.marks)
+      if (!layer.marks.empty()) STRATA_TRY(add_marks((layer_of_file++)->name, layer));
+    if (!drawing_.labels.empty()) add_labels(layer_of_file->name);
+    return {};
   }
 
-  void polyline(const std::string& layer, const OutlineRing& ring, bool is_closed) {
-    begin_entity("LWPOLYLINE", layer);
-    entities_.text(100, "AcDbPolyline");
-    entities_.whole(90, static_cast<std::int64_t>(ring.size()));
-    entities_.whole(70, is_closed ? 1 : 0);
+  // What an entity has instead of the properties of its layer.
+  struct Ink {
+    std::optional<Rgba> color{};
+    double opacity = 1;
+  };
+  void begin_entity(const char* type, const std::string& layer, const Ink& ink) {
+    pairs_.text(0, type);
+    pairs_.handle(5, new_handle());
+    pairs_.handle(330, kModelSpace);
+    pairs_.text(100, "AcDbEntity");
+    pairs_.text(8, layer);
+    if (ink.color) pairs_.whole(420, true_color(*ink.color));
+    if (ink.opacity < 1) pairs_.whole(440, 0x02000000 | std::lround(255 * ink.opacity));
+  }
+
+  void polyline(const std::string& layer, const OutlineRing& ring, bool is_closed, const Ink& ink) {
+    begin_entity("LWPOLYLINE", layer, ink);
+    pairs_.text(100, "AcDbPolyline");
+    pairs_.whole(90, static_cast<std::int64_t>(ring.size()));
+    pairs_.whole(70, is_closed ? 1 : 0);
     for (const glm::dvec2& point : ring) add_point(10, point);
   }
   void add_point(int code, const glm::dvec2& on_sheet) {
     const glm::dvec2 at = on_object(on_sheet);
-    entities_.point(code, at);
-    low_ = glm::min(low_, at);
-    high_ = glm::max(high_, at);
+    pairs_.point(code, at);
+    facts_.low = glm::min(facts_.low, at);
+    facts_.high = glm::max(facts_.high, at);
   }
 
   void attributes(const LayerVectors& layer, const std::string& name, double value,
                   std::optional<double> area_mm2) {
-    entities_.text(1001, "STRATA");
+    pairs_.text(1001, "STRATA");
     const auto pair = [&](const char* key, const std::string& text) {
-      entities_.text(1000, key);
-      entities_.text(1000, short_text(text));
+      pairs_.text(1000, key);
+      pairs_.text(1000, first_bytes(plain(text), kMaxString));
     };
     pair("layer", layer.name);
     if (!name.empty()) pair("class", name);
-    entities_.text(1000, "value");
-    entities_.number(1040, value);
+    pairs_.text(1000, "value");
+    pairs_.number(1040, value);
     if (!area_mm2) return;
-    entities_.text(1000, "area_mm2");
-    entities_.number(1040, *area_mm2);
+    pairs_.text(1000, "area_mm2");
+    pairs_.number(1040, *area_mm2);
   }
-  // Strings of extended data have at most 255 bytes.
-  static std::string short_text(const std::string& text) {
-    std::string out = plain(text);
-    if (out.size() <= 255) return out;
-    std::size_t end = 255;
-    while ((static_cast<unsigned char>(out[end]) & 0xc0) == 0x80) --end;
-    return out.substr(0, end);
-  }
-
-  Result<void> add_class(const LayerVectors& layer, const ClassArea& area) {
-    const std::string name = names_.add(layer.name + " - " + area.name);
-    layers_.push_back({name, area.color});
+  Result<void> add_class(const std::string& name, const LayerVectors& layer,
+                         const ClassArea& area) {
     const double shown = layer.opacity * area.color[3] / 255.0;
     for (const OutlinePolygon& polygon : area.polygons) {
       if (progress_.cancelled()) return cancelled_problem();
@@ -245,7 +246,7 @@ class DxfWriter {
         attributes(layer, area.name, area.value, area_mm2);
       }
       for (const OutlineRing& ring : polygon.rings) {
-        polyline(name, ring, true);
+        polyline(name, ring, true, {});
         attributes(layer, area.name, area.value, area_mm2);
       }
     }
@@ -256,262 +257,262 @@ class DxfWriter {
              double shown) {
     constexpr int kExternal = 1, kPolyline = 2, kOutermost = 16;
     const bool is_solid = area.pattern == Pattern::solid;
-    begin_entity("HATCH", name);
-    opacity(shown);
-    entities_.text(100, "AcDbHatch");
-    entities_.space_point(10, {0, 0});
-    entities_.number(210, 0);
-    entities_.number(220, 0);
-    entities_.number(230, 1);
-    entities_.text(2, is_solid ? "SOLID" : area.pattern == Pattern::dots ? "DOTS" : "LINES");
-    entities_.whole(70, is_solid ? 1 : 0);
-    entities_.whole(71, 0);
-    entities_.whole(91, static_cast<std::int64_t>(polygon.rings.size()));
+    begin_entity("HATCH", name, {std::nullopt, shown});
+    pairs_.text(100, "AcDbHatch");
+    pairs_.space_point(10, {0, 0});
+    pairs_.number(210, 0);
+    pairs_.number(220, 0);
+    pairs_.number(230, 1);
+    pairs_.text(2, is_solid ? "SOLID" : area.pattern == Pattern::dots ? "DOTS" : "LINES");
+    pairs_.whole(70, is_solid ? 1 : 0);
+    pairs_.whole(71, 0);
+    pairs_.whole(91, static_cast<std::int64_t>(polygon.rings.size()));
     for (std::size_t i = 0; i < polygon.rings.size(); ++i) {
-      entities_.whole(92, kPolyline | (i == 0 ? kExternal : kOutermost));
-      entities_.whole(72, 0);
-      entities_.whole(73, 1);
-      entities_.whole(93, static_cast<std::int64_t>(polygon.rings[i].size()));
+      pairs_.whole(92, kPolyline | (i == 0 ? kExternal : kOutermost));
+      pairs_.whole(72, 0);
+      pairs_.whole(73, 1);
+      pairs_.whole(93, static_cast<std::int64_t>(polygon.rings[i].size()));
       for (const glm::dvec2& point : polygon.rings[i]) add_point(10, point);
-      entities_.whole(97, 0);
+      pairs_.whole(97, 0);
     }
-    entities_.whole(75, 0);
-    entities_.whole(76, is_solid ? 1 : 2);
+    pairs_.whole(75, 0);
+    pairs_.whole(76, is_solid ? 1 : 2);
     if (!is_solid) {
       const double spacing = area.spacing_mm * drawing_.scale;
       const glm::dvec2 along = direction(area.angle);
       const glm::dvec2 across(along.y, along.x);  // y up on the object
-      entities_.number(52, 0);
-      entities_.number(41, 1);
-      entities_.whole(77, 0);
-      entities_.whole(78, 1);
-      entities_.number(53, area.angle);
-      entities_.number(43, 0);
-      entities_.number(44, 0);
-      entities_.number(45, across.x * spacing);
-      entities_.number(46, across.y * spacing);
+      pairs_.number(52, 0);
+      pairs_.number(41, 1);
+      pairs_.whole(77, 0);
+      pairs_.whole(78, 1);
+      pairs_.number(53, area.angle);
+      pairs_.number(43, 0);
+      pairs_.number(44, 0);
+      pairs_.number(45, across.x * spacing);
+      pairs_.number(46, across.y * spacing);
       if (area.pattern == Pattern::dots) {
-        entities_.whole(79, 2);
-        entities_.number(49, 0);
-        entities_.number(49, -spacing);
+        pairs_.whole(79, 2);
+        pairs_.number(49, 0);
+        pairs_.number(49, -spacing);
       } else {
-        entities_.whole(79, 0);
+        pairs_.whole(79, 0);
       }
     }
-    entities_.whole(98, 0);
+    pairs_.whole(98, 0);
   }
 
-  void add_marks(const LayerVectors& layer) {
-    const std::string name = names_.add(layer.name);
-    std::optional<Rgba> color;
-    if (!layer.marks.empty()) color = layer.marks[0].color;
-    layers_.push_back({name, color});
+  Result<void> add_marks(const std::string& name, const LayerVectors& layer) {
     for (const RecordMark& mark : layer.marks) {
+      if (progress_.cancelled()) return cancelled_problem();
+      const Ink ink{mark.color, layer.opacity * mark.color[3] / 255.0};
       if (mark.points.size() > 1) {
-        polyline(name, mark.points, false);
+        polyline(name, mark.points, false, ink);
       } else {
-        begin_entity("POINT", name);
-        entities_.text(100, "AcDbPoint");
+        begin_entity("POINT", name, ink);
+        pairs_.text(100, "AcDbPoint");
         add_point(10, mark.points[0]);
-        entities_.number(30, 0);
+        pairs_.number(30, 0);
       }
-      attributes(layer, {}, static_cast<double>(mark.key), std::nullopt);
+      attributes(layer, mark.name, static_cast<double>(mark.key), std::nullopt);
     }
+    return {};
   }
 
-  void add_labels() {
-    const std::string name = names_.add("Labels");
-    layers_.push_back({name, std::nullopt});
+  void add_labels(const std::string& name) {
     for (const Label& label : drawing_.labels) {
-      begin_entity("TEXT", name);
-      entities_.text(100, "AcDbText");
+      begin_entity("TEXT", name, {});
+      pairs_.text(100, "AcDbText");
       add_point(10, drawing_.area.corner + label.at);
-      entities_.number(30, 0);
-      entities_.number(40, kLabel_mm * drawing_.scale);
-      entities_.text(1, drawn_text(label.text));
-      entities_.whole(72, 1);  // centered
+      pairs_.number(30, 0);
+      pairs_.number(40, kLabel_mm * drawing_.scale);
+      pairs_.text(1, drawn_text(label.text));
+      pairs_.whole(72, 1);  // centered
       add_point(11, drawing_.area.corner + label.at);
-      entities_.number(31, 0);
-      entities_.text(100, "AcDbText");
-      entities_.whole(73, 2);  // at half height
+      pairs_.number(31, 0);
+      pairs_.text(100, "AcDbText");
+      pairs_.whole(73, 2);  // at half height
     }
   }
 
   // ── sections ───────────────────────────────────────────────────────────────────────────────────
 
-  static void begin_section(Pairs& pairs, const char* name) {
-    pairs.text(0, "SECTION");
-    pairs.text(2, name);
+  void begin_section(const char* name) {
+    pairs_.text(0, "SECTION");
+    pairs_.text(2, name);
   }
 
-  void write_header(Pairs& pairs) const {
-    begin_section(pairs, "HEADER");
-    const auto name = [&](const char* variable) { pairs.text(9, variable); };
+  void write_header(const Facts& stated) {
+    begin_section("HEADER");
+    const auto name = [&](const char* variable) { pairs_.text(9, variable); };
     name("$ACADVER");
-    pairs.text(1, "AC1021");
+    pairs_.text(1, "AC1021");
     name("$DWGCODEPAGE");
-    pairs.text(3, "ANSI_1252");  // texts are UTF-8 since AC1021
+    pairs_.text(3, "ANSI_1252");  // texts are UTF-8 since AC1021
     name("$INSUNITS");
-    pairs.whole(70, 4);  // millimeters
+    pairs_.whole(70, 4);  // millimeters
     name("$MEASUREMENT");
-    pairs.whole(70, 1);  // metric
+    pairs_.whole(70, 1);  // metric
     name("$HANDSEED");
-    pairs.handle(5, next_);
-    const bool has_content = low_.x <= high_.x;
+    pairs_.handle(5, stated.next_handle);
+    const bool has_content = stated.low.x <= stated.high.x;
     name("$EXTMIN");
-    pairs.space_point(10, has_content ? low_ : glm::dvec2(0));
+    pairs_.space_point(10, has_content ? stated.low : glm::dvec2(0));
     name("$EXTMAX");
-    pairs.space_point(10, has_content ? high_ : glm::dvec2(0));
-    pairs.text(0, "ENDSEC");
+    pairs_.space_point(10, has_content ? stated.high : glm::dvec2(0));
+    pairs_.text(0, "ENDSEC");
   }
 
-  static void begin_table(Pairs& pairs, const char* name, unsigned handle, std::size_t entries) {
-    pairs.text(0, "TABLE");
-    pairs.text(2, name);
-    pairs.handle(5, handle);
-    pairs.whole(330, 0);
-    pairs.text(100, "AcDbSymbolTable");
-    pairs.whole(70, static_cast<std::int64_t>(entries));
+  void begin_table(const char* name, unsigned handle, std::size_t entries) {
+    pairs_.text(0, "TABLE");
+    pairs_.text(2, name);
+    pairs_.handle(5, handle);
+    pairs_.whole(330, 0);
+    pairs_.text(100, "AcDbSymbolTable");
+    pairs_.whole(70, static_cast<std::int64_t>(entries));
   }
-  void begin_record(Pairs& pairs, const char* type, unsigned table, const char* subclass) {
-    pairs.text(0, type);
-    pairs.handle(5, new_handle());
-    pairs.handle(330, table);
-    pairs.text(100, "AcDbSymbolTableRecord");
-    pairs.text(100, subclass);
-  }
-
-  void write_layer(Pairs& pairs, const DxfLayer& layer) {
-    begin_record(pairs, "LAYER", kLayerTable, "AcDbLayerTableRecord");
-    pairs.text(2, layer.name);
-    pairs.whole(70, 0);
-    pairs.whole(62, kWhite);
-    if (layer.color) pairs.whole(420, true_color(*layer.color));
-    pairs.text(6, "Continuous");
+  void begin_record(const char* type, unsigned table, const char* subclass) {
+    pairs_.text(0, type);
+    pairs_.handle(5, new_handle());
+    pairs_.handle(330, table);
+    pairs_.text(100, "AcDbSymbolTableRecord");
+    pairs_.text(100, subclass);
   }
 
-  void write_tables(Pairs& pairs) {
-    begin_section(pairs, "TABLES");
-    const auto end = [&] { pairs.text(0, "ENDTAB"); };
-    begin_table(pairs, "VPORT", kViewportTable, 0);
+  void write_layer(const DxfLayer& layer) {
+    begin_record("LAYER", kLayerTable, "AcDbLayerTableRecord");
+    pairs_.text(2, layer.name);
+    pairs_.whole(70, 0);
+    pairs_.whole(62, kWhite);
+    if (layer.color) pairs_.whole(420, true_color(*layer.color));
+    pairs_.text(6, "Continuous");
+  }
+
+  void write_tables() {
+    begin_section("TABLES");
+    const auto end = [&] { pairs_.text(0, "ENDTAB"); };
+    begin_table("VPORT", kViewportTable, 0);
     end();
-    begin_table(pairs, "LTYPE", kLinetypeTable, 3);
+    begin_table("LTYPE", kLinetypeTable, 3);
     for (const char* name : {"ByBlock", "ByLayer", "Continuous"}) {
-      begin_record(pairs, "LTYPE", kLinetypeTable, "AcDbLinetypeTableRecord");
-      pairs.text(2, name);
-      pairs.whole(70, 0);
-      pairs.text(3, "");
-      pairs.whole(72, 65);
-      pairs.whole(73, 0);
-      pairs.number(40, 0);
+      begin_record("LTYPE", kLinetypeTable, "AcDbLinetypeTableRecord");
+      pairs_.text(2, name);
+      pairs_.whole(70, 0);
+      pairs_.text(3, "");
+      pairs_.whole(72, 65);
+      pairs_.whole(73, 0);
+      pairs_.number(40, 0);
     }
     end();
-    begin_table(pairs, "LAYER", kLayerTable, layers_.size() + 1);
-    write_layer(pairs, {"0", std::nullopt});
-    for (const DxfLayer& layer : layers_) write_layer(pairs, layer);
+    begin_table("LAYER", kLayerTable, layers_.size() + 1);
+    write_layer({"0", std::nullopt});
+    for (const DxfLayer& layer : layers_) write_layer(layer);
     end();
-    begin_table(pairs, "STYLE", kStyleTable, 1);
-    begin_record(pairs, "STYLE", kStyleTable, "AcDbTextStyleTableRecord");
-    pairs.text(2, "Standard");
-    pairs.whole(70, 0);
-    pairs.number(40, 0);
-    pairs.number(41, 1);
-    pairs.number(50, 0);
-    pairs.whole(71, 0);
-    pairs.number(42, kLabel_mm);
-    pairs.text(3, "arial.ttf");  // has letters of more languages than the fonts of AutoCAD
-    pairs.text(4, "");
+    begin_table("STYLE", kStyleTable, 1);
+    begin_record("STYLE", kStyleTable, "AcDbTextStyleTableRecord");
+    pairs_.text(2, "Standard");
+    pairs_.whole(70, 0);
+    pairs_.number(40, 0);
+    pairs_.number(41, 1);
+    pairs_.number(50, 0);
+    pairs_.whole(71, 0);
+    pairs_.number(42, kLabel_mm);
+    pairs_.text(3, "arial.ttf");  // has letters of more languages than the fonts of AutoCAD
+    pairs_.text(4, "");
     end();
-    begin_table(pairs, "VIEW", kViewTable, 0);
+    begin_table("VIEW", kViewTable, 0);
     end();
-    begin_table(pairs, "UCS", kUcsTable, 0);
+    begin_table("UCS", kUcsTable, 0);
     end();
-    begin_table(pairs, "APPID", kApplicationTable, 2);
+    begin_table("APPID", kApplicationTable, 2);
     for (const char* name : {"ACAD", "STRATA"}) {
-      begin_record(pairs, "APPID", kApplicationTable, "AcDbRegAppTableRecord");
-      pairs.text(2, name);
-      pairs.whole(70, 0);
+      begin_record("APPID", kApplicationTable, "AcDbRegAppTableRecord");
+      pairs_.text(2, name);
+      pairs_.whole(70, 0);
     }
     end();
-    begin_table(pairs, "DIMSTYLE", kDimensionTable, 1);
-    pairs.text(100, "AcDbDimStyleTable");
-    pairs.text(0, "DIMSTYLE");
-    pairs.handle(105, new_handle());
-    pairs.handle(330, kDimensionTable);
-    pairs.text(100, "AcDbSymbolTableRecord");
-    pairs.text(100, "AcDbDimStyleTableRecord");
-    pairs.text(2, "Standard");
-    pairs.whole(70, 0);
+    begin_table("DIMSTYLE", kDimensionTable, 1);
+    pairs_.text(100, "AcDbDimStyleTable");
+    pairs_.text(0, "DIMSTYLE");
+    pairs_.handle(105, new_handle());
+    pairs_.handle(330, kDimensionTable);
+    pairs_.text(100, "AcDbSymbolTableRecord");
+    pairs_.text(100, "AcDbDimStyleTableRecord");
+    pairs_.text(2, "Standard");
+    pairs_.whole(70, 0);
     end();
-    begin_table(pairs, "BLOCK_RECORD", kBlockTable, 2);
+    begin_table("BLOCK_RECORD", kBlockTable, 2);
     for (const auto& [name, handle] :
          {std::pair("*Model_Space", kModelSpace), std::pair("*Paper_Space", kPaperSpace)}) {
-      pairs.text(0, "BLOCK_RECORD");
-      pairs.handle(5, handle);
-      pairs.handle(330, kBlockTable);
-      pairs.text(100, "AcDbSymbolTableRecord");
-      pairs.text(100, "AcDbBlockTableRecord");
-      pairs.text(2, name);
+      pairs_.text(0, "BLOCK_RECORD");
+      pairs_.handle(5, handle);
+      pairs_.handle(330, kBlockTable);
+      pairs_.text(100, "AcDbSymbolTableRecord");
+      pairs_.text(100, "AcDbBlockTableRecord");
+      pairs_.text(2, name);
     }
     end();
-    pairs.text(0, "ENDSEC");
+    pairs_.text(0, "ENDSEC");
   }
 
-  void write_blocks(Pairs& pairs) const {
-    begin_section(pairs, "BLOCKS");
+  void write_blocks() {
+    begin_section("BLOCKS");
     unsigned handle = kGroupDictionary + 1;  // free handles below kFirstFree
     for (const auto& [name, record] :
          {std::pair("*Model_Space", kModelSpace), std::pair("*Paper_Space", kPaperSpace)}) {
       const auto begin = [&, record = record](const char* type, const char* subclass) {
-        pairs.text(0, type);
-        pairs.handle(5, handle++);
-        pairs.handle(330, record);
-        pairs.text(100, "AcDbEntity");
-        pairs.text(8, "0");
-        pairs.text(100, subclass);
+        pairs_.text(0, type);
+        pairs_.handle(5, handle++);
+        pairs_.handle(330, record);
+        pairs_.text(100, "AcDbEntity");
+        pairs_.text(8, "0");
+        pairs_.text(100, subclass);
       };
       begin("BLOCK", "AcDbBlockBegin");
-      pairs.text(2, name);
-      pairs.whole(70, 0);
-      pairs.space_point(10, {0, 0});
-      pairs.text(3, name);
-      pairs.text(1, "");
+      pairs_.text(2, name);
+      pairs_.whole(70, 0);
+      pairs_.space_point(10, {0, 0});
+      pairs_.text(3, name);
+      pairs_.text(1, "");
       begin("ENDBLK", "AcDbBlockEnd");
     }
-    pairs.text(0, "ENDSEC");
+    pairs_.text(0, "ENDSEC");
   }
 
-  static void write_objects(Pairs& pairs) {
-    begin_section(pairs, "OBJECTS");
+  void write_objects() {
+    begin_section("OBJECTS");
     const auto dictionary = [&](unsigned handle, unsigned owner) {
-      pairs.text(0, "DICTIONARY");
-      pairs.handle(5, handle);
-      pairs.handle(330, owner);
-      pairs.text(100, "AcDbDictionary");
-      pairs.whole(281, 1);
+      pairs_.text(0, "DICTIONARY");
+      pairs_.handle(5, handle);
+      pairs_.handle(330, owner);
+      pairs_.text(100, "AcDbDictionary");
+      pairs_.whole(281, 1);
     };
     dictionary(kRootDictionary, 0);
-    pairs.text(3, "ACAD_GROUP");
-    pairs.handle(350, kGroupDictionary);
+    pairs_.text(3, "ACAD_GROUP");
+    pairs_.handle(350, kGroupDictionary);
     dictionary(kGroupDictionary, kRootDictionary);
-    pairs.text(0, "ENDSEC");
+    pairs_.text(0, "ENDSEC");
   }
 
   const DxfDrawing& drawing_;
   const Progress& progress_;
-  std::ostringstream entity_text_;
-  Pairs entities_;
-  LayerNames names_;
+  Pairs pairs_;
   std::vector<DxfLayer> layers_;
-  unsigned next_ = kFirstFree;
-  glm::dvec2 low_{1e300}, high_{-1e300};
+  Facts facts_;
 };
 
 }  // namespace
 
 Result<void> write_dxf(const DxfDrawing& drawing, const std::filesystem::path& file,
                        const Progress& progress) {
-  return DxfWriter(drawing, progress).write(file);
+  // The header states the next handle and the extent, so the first run only finds these.
+  std::ostream nowhere(nullptr);
+  const Facts facts = STRATA_TRY(DxfWriter(drawing, progress, nowhere).write({}));
+  std::ofstream out(file, std::ios::binary);
+  STRATA_TRY(DxfWriter(drawing, progress, out).write(facts));
+  out.close();
+  if (!out) return unwritable();
+  return {};
 }
 
 }  // namespace strata::figure

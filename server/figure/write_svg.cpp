@@ -1,6 +1,7 @@
 // Writes sheets as SVG, in millimeters. Groups have names, and text stays text, so users can edit
 // the file. (cairo's SVG draws letters as shapes.)
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -86,6 +87,7 @@ class GroupWriter {
     out_ << "<g id=\"" << escaped(group.id) << '"';
     if (!group.name.empty())
       out_ << " inkscape:groupmode=\"layer\" inkscape:label=\"" << escaped(group.name) << '"';
+    if (group.in_drawing) out_ << " clip-path=\"url(#drawing-clip)\"";
     if (group.opacity < 1) out_ << " opacity=\"" << short_number(group.opacity) << '"';
     out_ << ">\n";
     if (!group.name.empty()) out_ << "<title>" << escaped(group.name) << "</title>\n";
@@ -183,6 +185,11 @@ Result<void> write_svg(const Sheet& sheet, const Picture& drawing, const Documen
       << short_number(sheet.drawing.corner.y) << "\" width=\"" << short_number(sheet.drawing.size.x)
       << "\" height=\"" << short_number(sheet.drawing.size.y)
       << "\" preserveAspectRatio=\"none\" href=\"data:image/jpeg;base64," << jpeg << "\"/>\n";
+  if (std::ranges::any_of(sheet.groups, &Group::in_drawing))
+    out << "<clipPath id=\"drawing-clip\"><rect x=\"" << short_number(sheet.drawing.corner.x)
+        << "\" y=\"" << short_number(sheet.drawing.corner.y) << "\" width=\""
+        << short_number(sheet.drawing.size.x) << "\" height=\""
+        << short_number(sheet.drawing.size.y) << "\"/></clipPath>\n";
   GroupWriter writer(out);
   for (const Group& group : sheet.groups) writer.write_group(group);
   out << "</svg>\n";

@@ -51,9 +51,12 @@ Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& r
   std::set<double> keys;
   for (const auto& [key, feature] : features) {
     const auto value = static_cast<double>(key);
+    const double reach = sight.reach_of(feature.places);
     const std::size_t step = std::max<std::size_t>(1, feature.places.size() / kMaxPlaces);
     for (std::size_t i = 0; i < feature.places.size() && !keys.contains(value); i += step) {
-      const auto seen = STRATA_TRY(sight.sees(feature.places[i]));
+      const glm::dvec3& place = feature.places[i];
+      if (!sight.part_in_drawing(place, place)) continue;
+      const auto seen = STRATA_TRY(sight.sees(place, reach));
       if (seen) keys.insert(value);
     }
   }

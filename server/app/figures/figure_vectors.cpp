@@ -18,9 +18,13 @@ namespace {
 
 constexpr double kCellsOfBand = 500'000;
 constexpr std::uint64_t kBytesOfCell = 24;  // labels, faces, and the part of the outlines
+constexpr std::uint64_t kBytesOfPoint = 2 * sizeof(glm::dvec2);  // of vectors and their patterns
 // As in the image, a line is tested at these distances, and short hidden parts are drawn.
 constexpr double kMarkStep_mm = 0.5;
 constexpr int kClosedSteps = 3;
+// In PDF and SVG, the outlines continue beyond the drawing by this length, so that areas that
+// continue have no border at its edge. The writers clip them.
+constexpr double kOverlap_mm = 2 * figure::kBorder;
 
 bool has_classes(const FigureRequest& request, const Layer& layer) {
   if (layer.table) return true;
@@ -90,6 +94,19 @@ class Classes {
   std::vector<figure::ClassArea> areas_;
 };
 
+// Returns the names of records or classes, in the order of `values`.
+Result<std::vector<std::string>> names_of(store::Store& store, const FigureRequest& request,
+                                          const Layer& layer, const std::vector<double>& values) {
+  std::optional<std::int64_t> at;
+  if (layer.table) {
+    auto then = STRATA_TRY(table_sequence(store, request, layer));
+    at = then;
+  }
+  Layer with_palette = layer;  // labels come from the palette of the view
+  with_palette.palette = palette_of(request, layer);
+  return class_names(store, with_palette, request.role, values, at, request.language);
+}
+
 Result<void> name_classes(store::Store& store, const FigureRequest& request, const Layer& layer,
                           const Palette& palette, std::vector<figure::ClassArea>& areas) {
   if (!layer.table && palette.mode == PaletteMode::step) {
@@ -97,17 +114,9 @@ Result<void> name_classes(store::Store& store, const FigureRequest& request, con
       if (area.name.empty()) area.name = csv_number(area.value, ',');
     return {};
   }
-  std::optional<std::int64_t> at;
-  if (layer.table) {
-    auto then = STRATA_TRY(table_sequence(store, request, layer));
-    at = then;
-  }
   std::vector<double> values;
   for (const figure::ClassArea& area : areas) values.push_back(area.value);
-  Layer with_palette = layer;  // labels come from the palette of the view
-  with_palette.palette = palette_of(request, layer);
-  auto names =
-      STRATA_TRY(class_names(store, with_palette, request.role, values, at, request.language));
+  auto names = STRATA_TRY(names_of(store, request, layer, values));
   for (std::size_t i = 0; i < areas.size(); ++i) areas[i].name = std::move(names[i]);
   return {};
 }
@@ -127,8 +136,8 @@ Grid grid_over(const glm::dvec2& size_mm, double tolerance_mm) {
 }
 
 Result<figure::LabelGrid> labels_on(const FigureRequest& request, const figure::Drawing& drawing,
-                                    const Grid& grid, const Layer& layer, Classes& classes,
-                                    Progress& progress) {
+                                    const figure::Box& area, const Grid& grid, const Layer& layer,
+                                    Classes& classes, Progress& progress) {
   figure::LabelGrid found{grid.columns, grid.rows, {}};
   found.labels.reserve(static_cast<std::size_t>(grid.columns) *
                        static_cast<std::size_t>(grid.rows));
@@ -136,8 +145,9 @@ Result<figure::LabelGrid> labels_on(const FigureRequest& request, const figure::
   for (int row = 0; row < grid.rows; row += step) {
     if (progress.cancelled()) return cancelled_problem();
     const int rows = std::min(step, grid.rows - row);
-    const Camera camera = figure::camera_over(drawing, {0, row * grid.cell_mm.y},
-                                              glm::dvec2(grid.columns, rows) * grid.cell_mm);
+    const Camera camera =
+        figure::camera_over(drawing, area.corner + glm::dvec2(0, row * grid.cell_mm.y),
+                            glm::dvec2(grid.columns, rows) * grid.cell_mm);
     const auto keys = STRATA_TRY(request.room->pictures().seen_keys(
         layer.slug, camera, grid.columns, rows, request.shown.at));
     for (const auto& key : keys)
@@ -156,12 +166,13 @@ figure::LayerVectors vectors_of(const FigureRequest& request, const Layer& layer
 }
 
 Result<figure::LayerVectors> areas_of(store::Store& store, const FigureRequest& request,
-                                      const figure::Drawing& drawing, const figure::Box& area,
-                                      const Layer& layer, Progress& progress) {
+                                      const figure::Drawing& drawing, const glm::dvec2& corner,
+                                      const figure::Box& area, const Layer& layer,
+                                      Progress& progress) {
   const auto palette = STRATA_TRY(colors_of(store, request, layer));
   const Grid grid = grid_over(area.size, *request.outline_tolerance_mm);
   Classes classes(layer, *palette);
-  auto labels = STRATA_TRY(labels_on(request, drawing, grid, layer, classes, progress));
+  auto labels = STRATA_TRY(labels_on(request, drawing, area, grid, layer, classes, progress));
   figure::OutlineSettings settings;
   settings.tolerance = *request.outline_tolerance_mm / std::max(grid.cell_mm.x, grid.cell_mm.y);
   settings.smallest_area = std::pow(kSmallestPiece * settings.tolerance, 2);
@@ -174,7 +185,7 @@ Result<figure::LayerVectors> areas_of(store::Store& store, const FigureRequest& 
     of_class.polygons = std::move(polygons);
     for (figure::OutlinePolygon& polygon : of_class.polygons)
       for (figure::OutlineRing& ring : polygon.rings)
-        for (glm::dvec2& point : ring) point = area.corner + point * grid.cell_mm;
+        for (glm::dvec2& point : ring) point = corner + area.corner + point * grid.cell_mm;
     // The scale of the drawing, as the shader uses it.
     of_class.spacing_mm = figure::pattern_spacing(of_class.spacing_mm / drawing.scale);
     vectors.areas.push_back(std::move(of_class));
@@ -183,44 +194,77 @@ Result<figure::LayerVectors> areas_of(store::Store& store, const FigureRequest& 
   return vectors;
 }
 
-// Adds the parts of a line or the point that the drawing shows.
-Result<void> add_marks(const MarkSight& sight, const KeyFeature& feature, const Rgba& color,
-                       const std::function<glm::dvec2(const glm::dvec3&)>& on_sheet,
-                       std::vector<figure::RecordMark>& marks) {
-  const auto& places = feature.feature.places;
+using OnSheet = std::function<glm::dvec2(const glm::dvec3&)>;
+
+// Collects the visible parts of a line. Parts have the corners of the line and their own ends as
+// points.
+class VisibleParts {
+ public:
+  explicit VisibleParts(std::vector<std::vector<glm::dvec2>>& parts) : parts_(parts) {}
+
+  // Adds the next place of the line. A hidden piece of a few places does not divide the line.
+  void add(const glm::dvec2& place, bool is_seen, bool is_corner) {
+    if (!is_seen) {
+      if (++hidden_ > kClosedSteps) end();
+      if (is_corner && !points_.empty()) waiting_.push_back(place);
+      return;
+    }
+    hidden_ = 0;
+    points_.insert(points_.end(), waiting_.begin(), waiting_.end());
+    waiting_.clear();
+    if (is_corner || points_.empty()) points_.push_back(place);
+    last_ = place;
+  }
+  void end() {
+    if (!points_.empty() && points_.back() != last_) points_.push_back(last_);
+    if (points_.size() > 1) parts_.push_back(std::move(points_));
+    points_.clear();
+    waiting_.clear();
+    hidden_ = 0;
+  }
+
+ private:
+  std::vector<std::vector<glm::dvec2>>& parts_;
+  std::vector<glm::dvec2> points_, waiting_;  // corners after the last visible place wait
+  glm::dvec2 last_{0};                        // the last visible place
+  int hidden_ = 0;                            // number of places since then
+};
+
+// Returns the parts of a line or the point that the drawing shows.
+Result<std::vector<std::vector<glm::dvec2>>> visible_parts(const MarkSight& sight,
+                                                           const std::vector<glm::dvec3>& places,
+                                                           const OnSheet& on_sheet,
+                                                           const Progress& progress) {
+  std::vector<std::vector<glm::dvec2>> parts;
+  const double reach = sight.reach_of(places);
   if (places.size() == 1) {
-    const bool is_seen = STRATA_TRY(sight.sees(places[0]));
-    if (is_seen) marks.push_back({feature.key, color, {on_sheet(places[0])}});
-    return {};
+    if (!sight.part_in_drawing(places[0], places[0])) return parts;
+    const bool is_seen = STRATA_TRY(sight.sees(places[0], reach));
+    if (is_seen) parts.push_back({on_sheet(places[0])});
+    return parts;
   }
-  std::vector<glm::dvec2> points;  // of the part so far
-  std::size_t seen = 0;            // number of its points up to the last visible one
-  int hidden = 0;
-  const auto end_part = [&] {
-    points.resize(seen);
-    if (seen > 1) marks.push_back({feature.key, color, points});
-    points.clear();
-    seen = 0;
-  };
-  const auto visit = [&](const glm::dvec3& place) -> Result<void> {
-    const bool is_seen = STRATA_TRY(sight.sees(place));
-    hidden = is_seen ? 0 : hidden + 1;
-    if (hidden > kClosedSteps) end_part();
-    if (is_seen || !points.empty()) points.push_back(on_sheet(place));
-    if (is_seen) seen = points.size();
-    return {};
-  };
-  STRATA_TRY(visit(places[0]));
+  VisibleParts line(parts);
   for (std::size_t i = 1; i < places.size(); ++i) {
-    const double length = glm::distance(on_sheet(places[i - 1]), on_sheet(places[i]));
-    constexpr double kMostSteps = 10'000;
-    const int steps =
-        static_cast<int>(std::clamp(std::ceil(length / kMarkStep_mm), 1.0, kMostSteps));
-    for (int step = 1; step <= steps; ++step)
-      STRATA_TRY(visit(glm::mix(places[i - 1], places[i], static_cast<double>(step) / steps)));
+    if (progress.cancelled()) return cancelled_problem();
+    const glm::dvec3 &from = places[i - 1], &to = places[i];
+    const auto part = sight.part_in_drawing(from, to);
+    if (!part || part->first > 0) line.end();
+    if (!part) continue;
+    const auto [begin, end] = *part;
+    const double length = glm::distance(on_sheet(from), on_sheet(to)) * (end - begin);
+    const int steps = std::max(1, static_cast<int>(std::ceil(length / kMarkStep_mm)));
+    // The previous segment has already added a common corner.
+    for (int step = i > 1 && begin == 0 ? 1 : 0; step <= steps; ++step) {
+      const double t =
+          step == steps ? end : std::lerp(begin, end, static_cast<double>(step) / steps);
+      const glm::dvec3 place = glm::mix(from, to, t);
+      const bool is_seen = STRATA_TRY(sight.sees(place, reach));
+      line.add(on_sheet(place), is_seen, t == 0 || t == 1);
+    }
+    if (end < 1) line.end();
   }
-  end_part();
-  return {};
+  line.end();
+  return parts;
 }
 
 Result<figure::LayerVectors> marks_of(store::Store& store, const FigureRequest& request,
@@ -235,12 +279,33 @@ Result<figure::LayerVectors> marks_of(store::Store& store, const FigureRequest& 
   const auto on_sheet = [&](const glm::dvec3& place) {
     return area.corner + sight.pixel_of(place) * pixel_mm;
   };
+  std::vector<double> keys;  // of the visible features
   for (const KeyFeature& feature : features) {
     if (progress.cancelled()) return cancelled_problem();
     const Rgba color = color_of(*palette, static_cast<double>(feature.key));
-    if (color[3] != 0) STRATA_TRY(add_marks(sight, feature, color, on_sheet, vectors.marks));
+    if (color[3] == 0) continue;
+    auto parts = STRATA_TRY(visible_parts(sight, feature.feature.places, on_sheet, progress));
+    if (!parts.empty()) keys.push_back(static_cast<double>(feature.key));
+    for (auto& part : parts) vectors.marks.push_back({feature.key, {}, color, std::move(part)});
+  }
+  const auto names = STRATA_TRY(names_of(store, request, layer, keys));
+  std::size_t feature = 0;
+  for (figure::RecordMark& mark : vectors.marks) {
+    while (keys[feature] != static_cast<double>(mark.key)) ++feature;
+    mark.name = names[feature];
   }
   return vectors;
+}
+
+std::uint64_t points_of(const FigureVectors& vectors) {
+  std::uint64_t points = 0;
+  for (const figure::LayerVectors& layer : vectors.areas)
+    for (const figure::ClassArea& area : layer.areas)
+      for (const figure::OutlinePolygon& polygon : area.polygons)
+        for (const figure::OutlineRing& ring : polygon.rings) points += ring.size();
+  for (const figure::LayerVectors& layer : vectors.marks)
+    for (const figure::RecordMark& mark : layer.marks) points += mark.points.size();
+  return points;
 }
 
 }  // namespace
@@ -266,7 +331,10 @@ Result<FigureVectors> figure_vectors(store::Store& store, ByteBudget& budget,
                                      const FigureRequest& request, const figure::Drawing& drawing,
                                      const figure::Box& area, Progress& progress) {
   FigureVectors vectors;
-  const Grid grid = grid_over(area.size, *request.outline_tolerance_mm);
+  // From the drawing's top left.
+  const glm::dvec2 overlap(request.format == figure::Format::dxf ? 0 : kOverlap_mm);
+  const figure::Box outlined_area{-overlap, area.size + 2.0 * overlap};
+  const Grid grid = grid_over(outlined_area.size, *request.outline_tolerance_mm);
   const auto held = STRATA_TRY(budget.take(kBytesOfCell * static_cast<std::uint64_t>(grid.columns) *
                                            static_cast<std::uint64_t>(grid.rows)));
   const auto outlined = outlined_layers(request);
@@ -274,8 +342,8 @@ Result<FigureVectors> figure_vectors(store::Store& store, ByteBudget& budget,
     progress.begin_stage(
         0.05 + 0.4 * static_cast<double>(i) / static_cast<double>(outlined.size()),
         0.05 + 0.4 * static_cast<double>(i + 1) / static_cast<double>(outlined.size()));
-    auto found =
-        STRATA_TRY(areas_of(store, request, drawing, area, request.layers[outlined[i]], progress));
+    auto found = STRATA_TRY(areas_of(store, request, drawing, area.corner, outlined_area,
+                                     request.layers[outlined[i]], progress));
     vectors.areas.push_back(std::move(found));
   }
   const Camera camera = figure::camera_of(drawing);
@@ -284,6 +352,8 @@ Result<FigureVectors> figure_vectors(store::Store& store, ByteBudget& budget,
     auto found = STRATA_TRY(marks_of(store, request, camera, area, layer, progress));
     vectors.marks.push_back(std::move(found));
   }
+  auto kept = STRATA_TRY(budget.take(kBytesOfPoint * points_of(vectors)));
+  vectors.held = std::move(kept);
   return vectors;
 }
 

@@ -23,10 +23,12 @@ inline constexpr double kSmallestPiece = 2;
 std::vector<std::size_t> outlined_layers(const FigureRequest& request);
 
 // Returns the visible areas of these layers, in their order, and then the lines and points of all
-// layers of records. Areas below others are complete. Returns 422 for areas with too many small
-// pieces, 503 if too many figures are being created, and `cancelled`. Blocks.
+// layers of records. Areas below others are complete. In PDF and SVG, areas
+// continue slightly beyond the drawing, so the drawing must clip them. Returns 422 for areas with
+// too many small pieces, 503 if too many figures are being created, and `cancelled`. Blocks.
 struct FigureVectors {
   std::vector<figure::LayerVectors> areas, marks;
+  std::shared_ptr<const void> held;  // their part of the budget
 };
 Result<FigureVectors> figure_vectors(store::Store& store, ByteBudget& budget,
                                      const FigureRequest& request, const figure::Drawing& drawing,

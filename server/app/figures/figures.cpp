@@ -240,6 +240,15 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
     vectors = std::move(found);
   }
   if (request.format == figure::Format::dxf) {
+    const auto is_empty = [](const figure::LayerVectors& layer) {
+      return layer.areas.empty() && layer.marks.empty();
+    };
+    if (std::ranges::all_of(vectors.areas, is_empty) &&
+        std::ranges::all_of(vectors.marks, is_empty) && labels.empty())
+      return fail(ErrorCode::invalid, "Nothing to draw",
+                  "A DXF file contains only classes and records, and the drawing has none. Show a "
+                  "layer with classes or records, or choose another format.",
+                  "format");
     const double mm_per_unit = model.metres() * 1000;
     const glm::dvec2 half_mm = layout.drawing_mm() * (drawing.scale / 2);
     const figure::DxfDrawing dxf{std::move(vectors.areas),
@@ -256,10 +265,10 @@ Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, By
   progress.begin_stage(0.75, 1);
   auto sheet = layout.finish(drawing.scale, north_on(request.plane, model), labels);
   std::vector<figure::Group> groups;  // below all others
-  for (const figure::LayerVectors& layer : vectors.areas)
-    groups.push_back(figure::area_group(layer));
-  for (const figure::LayerVectors& layer : vectors.marks)
-    groups.push_back(figure::mark_group(layer));
+  for (figure::LayerVectors& layer : vectors.areas)
+    groups.push_back(figure::area_group(std::move(layer)));
+  for (figure::LayerVectors& layer : vectors.marks)
+    groups.push_back(figure::mark_group(std::move(layer)));
   sheet.groups.insert(sheet.groups.begin(), std::make_move_iterator(groups.begin()),
                       std::make_move_iterator(groups.end()));
   return write_figure_file(request, sheet, picture, drawing.scale, folder, progress);

@@ -63,7 +63,8 @@ struct FigureRequest {
 };
 
 // Draws a figure on a plane and writes it to a file in `folder`. Returns 422 for a section that
-// removes the whole model, and 503 if too many figures are being created. Blocks.
+// removes the whole model and for a DXF file without content, and 503 if too many figures are being
+// created. Blocks.
 Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, ByteBudget& budget,
                                                          const FigureRequest& request,
                                                          const std::filesystem::path& folder,

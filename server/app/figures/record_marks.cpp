@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/view/drawn_features.h"
 #include "room/edits.h"
 #include "room/queries.h"
 #include "store/tables/records.h"
@@ -13,8 +14,6 @@ namespace {
 
 // The distance is multiplied by at least this factor, so steep surfaces hide points behind them.
 constexpr double kMinCosine = 1.0 / 12;
-// The depth below the surface at which lines and points are still drawn in the image.
-constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;
 
 }  // namespace
 
@@ -36,9 +35,12 @@ Result<std::vector<KeyFeature>> features_in(store::Store& store, const FigureReq
 MarkSight::MarkSight(const FigureRequest& request, const Camera& camera)
     : request_(request), camera_(camera) {
   const Model model = request.room->model();
-  const double pixel = 2 / (std::abs(camera.projection[0][0]) * camera.width);
-  reach_ = kPlaceReach_px * pixel +
-           kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);
+  pixel_ = 2 / (std::abs(camera.projection[0][0]) * camera.width);
+  model_size_ = glm::distance(model.bounds_min, model.bounds_max);
+}
+
+double MarkSight::reach_of(const std::vector<glm::dvec3>& places) const {
+  return std::max(render::kFeatureReach_px * pixel_, render::reach_on_model(places, model_size_));
 }
 
 glm::dvec2 MarkSight::pixel_of(const glm::dvec3& place) const {
@@ -46,21 +48,36 @@ glm::dvec2 MarkSight::pixel_of(const glm::dvec3& place) const {
   return {(clip.x + 1) / 2 * camera_.width, (1 - clip.y) / 2 * camera_.height};
 }
 
-Result<bool> MarkSight::sees(const glm::dvec3& place) const {
-  const auto is_cut_off = [&](const glm::dvec4& plane) {
-    return glm::dot(plane, glm::dvec4(place, 1)) < 0;
+std::optional<std::pair<double, double>> MarkSight::part_in_drawing(const glm::dvec3& from,
+                                                                    const glm::dvec3& to) const {
+  double begin = 0, end = 1;
+  // Keeps the part where a linear function with these values at the ends is not negative.
+  const auto narrow = [&](double at_from, double at_to) {
+    if (at_from < 0 && at_to < 0) end = -1;
+    if (at_from < 0 && at_to >= 0) begin = std::max(begin, at_from / (at_from - at_to));
+    if (at_from >= 0 && at_to < 0) end = std::min(end, at_from / (at_from - at_to));
   };
-  if (std::ranges::any_of(camera_.section, is_cut_off)) return false;
-  const glm::dvec2 pixel = pixel_of(place);
-  if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera_.width && pixel.y <= camera_.height))
-    return false;
+  for (const glm::dvec4& plane : camera_.section)
+    narrow(glm::dot(plane, glm::dvec4(from, 1)), glm::dot(plane, glm::dvec4(to, 1)));
+  const glm::dvec2 a = pixel_of(from), b = pixel_of(to), size(camera_.width, camera_.height);
+  for (int axis = 0; axis < 2; ++axis) {
+    narrow(a[axis], b[axis]);
+    narrow(size[axis] - a[axis], size[axis] - b[axis]);
+  }
+  if (begin > end) return std::nullopt;
+  return std::pair(begin, end);
+}
+
+Result<bool> MarkSight::sees(const glm::dvec3& place, double reach) const {
+  const glm::dvec2 pixel =
+      glm::clamp(pixel_of(place), glm::dvec2(0), glm::dvec2(camera_.width, camera_.height));
   const auto hit = request_.room->queries().pick(camera_, pixel.x, pixel.y, {}, {});
   if (!hit) return tl::unexpected(hit.error());
   if (!hit->hit) return true;
   const glm::dvec3 apart = place - glm::dvec3(hit->position);
   if ((camera_.view * glm::dvec4(apart, 0)).z >= 0) return true;  // in front of the surface
   return std::max(std::abs(glm::dot(apart, glm::dvec3(hit->normal))),
-                  kMinCosine * glm::length(apart)) <= reach_;
+                  kMinCosine * glm::length(apart)) <= reach;
 }
 
 }  // namespace strata::app

@@ -18,19 +18,28 @@ Result<std::vector<KeyFeature>> features_in(store::Store& store, const FigureReq
 
 // Finds out which points of features are in the drawing and not hidden by a surface. As in the
 // image (feature_sight_pass.comp), a point in front of the surface is visible. A point behind it is
-// visible up to a small distance, measured perpendicular to the surface.
+// visible up to the same distance as there, measured perpendicular to the surface.
 class MarkSight {
  public:
-  // Both must exist as long as this object.
+  // Both must exist as long as this object. The camera is orthographic.
   MarkSight(const FigureRequest& request, const Camera& camera);
-  Result<bool> sees(const glm::dvec3& place) const;
+
+  // Returns the largest distance below the surface at which the places of a feature are visible.
+  double reach_of(const std::vector<glm::dvec3>& places) const;
+  // Returns whether no surface hides a place of a feature with this reach. The place must be in a
+  // part that part_in_drawing returns.
+  Result<bool> sees(const glm::dvec3& place, double reach) const;
+  // Returns the begin and the end of the part of a segment that is in the window and that the
+  // section keeps, as shares of the segment. Returns nothing if there is no such part.
+  std::optional<std::pair<double, double>> part_in_drawing(const glm::dvec3& from,
+                                                           const glm::dvec3& to) const;
   // In pixels of the camera's window, from its top left.
   glm::dvec2 pixel_of(const glm::dvec3& place) const;
 
  private:
   const FigureRequest& request_;
   const Camera& camera_;
-  double reach_ = 0;
+  double pixel_ = 0, model_size_ = 0;  // in world units
 };
 
 }  // namespace strata::app

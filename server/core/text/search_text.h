@@ -10,4 +10,8 @@ namespace strata {
 // change invalid UTF-8.
 std::string search_text(std::string_view text);
 
+// Returns the same text for texts that differ only in upper and lower case. Does not change invalid
+// UTF-8.
+std::string case_folded(std::string_view text);
+
 }  // namespace strata

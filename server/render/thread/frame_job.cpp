@@ -18,10 +18,8 @@ constexpr int kPixelsOfMeanPerStep = 1 << 20;
 
 constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // takes a few milliseconds
 
-// The largest distance of a mark's visible point below the visible surface, in pixels of the
-// camera's window. The surface of a coarser copy can differ from the full mesh by
-// kFeatureReachOfCopies_px.
-constexpr double kFeatureReach_px = 1, kFeatureReachOfCopies_px = 10;
+// As kFeatureReach_px, for coarser copies, whose surface can differ from the full mesh.
+constexpr double kFeatureReachOfCopies_px = 10;
 
 // The cost of one segment of a mark (0.8 µs with llvmpipe), in the unit of `kRectCost_px`. Each
 // rectangle draws all marks again.

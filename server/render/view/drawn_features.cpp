@@ -146,6 +146,11 @@ double length_of(const std::vector<glm::dvec3>& places) {
 
 }  // namespace
 
+double reach_on_model(const std::vector<glm::dvec3>& places, double model_size) {
+  return places.size() == 1 ? kReachOfPoint * model_size
+                            : std::min(kReachOfSize * model_size, kReachOfLine * length_of(places));
+}
+
 std::vector<shader::FeatureSegment> project_features(const std::vector<DrawnFeature>& features,
                                                      const Camera& camera, int width, int height,
                                                      const FeatureReach& reach) {
@@ -160,9 +165,7 @@ std::vector<shader::FeatureSegment> project_features(const std::vector<DrawnFeat
     style.color =
         glm::vec4(feature.color[0], feature.color[1], feature.color[2], feature.color[3]) / 255.0f;
     style.reach_px = reach.pixels * projection.scale();
-    style.reach = is_point ? kReachOfPoint * reach.model_size
-                           : std::min(kReachOfSize * reach.model_size,
-                                      kReachOfLine * length_of(feature.places));
+    style.reach = reach_on_model(feature.places, reach.model_size);
     Projected from, to;
     if (is_point) {
       if (projection.segment(feature.places[0], feature.places[0], from, to))

@@ -28,6 +28,9 @@ struct FeatureReach {
   double pixels = 1;
   double model_size = 0;  // diagonal of its box, in world units
 };
+inline constexpr double kFeatureReach_px = 1;  // on the full mesh
+// Returns the length on the model, for a line or, with one place, a point.
+double reach_on_model(const std::vector<glm::dvec3>& places, double model_size);
 
 // Returns the pieces of the marks that may be visible in a frame of `width` × `height` pixels.
 // Omits parts that are behind the eye or that the section removes. The ends of the pieces depend

@@ -17,7 +17,7 @@ from support.pictures import pixels
 M = "/models/sheet"  # a flat sheet with x and y from 0 to 100 mm
 SVG = "{http://www.w3.org/2000/svg}"
 BARE = {"legend": False, "light": {"mode": "unlit"}, "looks": [], "title": "", "credit": ""}
-TOP = {"direction": "top", "scale": 1, "dpi": 100, **BARE}
+TOP = {"direction": "top", "scale": 1, "paper": "a5", "dpi": 100, **BARE}
 RADIUS = 20
 
 
@@ -72,6 +72,29 @@ def server(server):
         "POST", M + "/layers", {"name": "Damp", "type": "f32", "resolution": 2048, "visible": False}
     )
     fill(server, "damp", "y < 20", 0.5)
+    server.ok(
+        "POST",
+        "/projects/default/tables",
+        {
+            "name": "Cracks",
+            "columns": [
+                {"name": "Code"},
+                {"name": "Path", "kind": "line"},
+                {"name": "Sample", "kind": "point"},
+            ],
+        },
+    )
+    cracks = {"name": "Cracks", "kind": "database", "type": "u16", "table": "cracks"}
+    server.ok("POST", M + "/layers", {**cracks, "resolution": 2048, "visible": False})
+    model = server.get(M).json()["id"]
+    for code, column, places in (
+        ("Long", "path", [[0, 50, 0], [50, 50, 0], [50, 60, 0]]),
+        ("Below", "path", [[40, 40, -0.4], [60, 40, -0.4]]),  # the sheet hides it
+        ("Inside", "sample", [[70, 20, 0]]),
+        ("Outside", "sample", [[95, 50, 0]]),
+    ):
+        place = [{"model": model, "coordinates": places}]
+        server.ok("POST", "/tables/cracks/records", {"values": {"code": code, column: place}})
     return server
 
 
@@ -189,11 +212,8 @@ def test_the_order_of_layers_stays(server):
     assert group.get("opacity") == "0.5"
 
 
-def test_dxf(server):
-    """A reader of CAD files finds no problem, and the areas of the quantities."""
-    answer = figure(server, format="dxf", **{**TOP, "scale": 2.5})
-    assert answer.headers["Content-Type"] == "image/vnd.dxf"
-    assert answer.headers["Content-Disposition"].endswith("sheet-top-1-2.5.dxf")
+def drawing_of(answer):
+    """The DXF file, as a reader of CAD files understands it without finding a problem."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "sheet.dxf")
         with open(path, "wb") as out:
@@ -201,19 +221,67 @@ def test_dxf(server):
         document = ezdxf.readfile(path)
     problems = document.audit()
     assert not problems.errors and not problems.fixes, (problems.errors, problems.fixes)
+    return document
+
+
+def attributes_of(entity):
+    data = [tag.value for tag in entity.get_xdata("STRATA")][1:]
+    return dict(zip(data[::2], data[1::2]))
+
+
+CUT = {**TOP, "scale": 0.5, "format": "dxf"}  # the drawing is smaller than the sheet
+
+
+def test_marks_in_dxf(server):
+    """Lines end at the edge of the drawing and keep only their own corners. What the surface hides
+    is absent."""
+    layers = [{"layer": "cracks", "visible": True}, {"layer": "marks", "visible": False}]
+    document = drawing_of(figure(server, layers=layers, **CUT))
+    found = {attributes_of(each)["class"]: each for each in document.modelspace()}
+    assert sorted(found) == ["Inside", "Long"], found
+    assert attributes_of(found["Inside"])["layer"] == "Cracks"
+    assert [round(each, 3) for each in found["Inside"].dxf.location] == [70, 20, 0]
+    corners = [tuple(round(each, 3) for each in point) for point in found["Long"].get_points("xy")]
+    assert corners[1:] == [(50, 50), (50, 60)] and corners[0][1] == 50, corners
+    assert 1 < corners[0][0] < 40, corners
+    assert document.header["$EXTMAX"][0] == 70
+    assert found["Long"].rgb is not None and found["Inside"].rgb is not None
+
+
+def test_the_texts_of_a_sheet_do_not_change_a_dxf_file(server):
+    """A long caption and a legend take space on a sheet, but a DXF file has no sheet."""
+    words = {"title": "Title", "caption": "A long caption. " * 40, "legend": True}
+    extents = []
+    for more in ({}, words):
+        header = drawing_of(figure(server, **{**CUT, **more})).header
+        extents.append((header["$EXTMIN"], header["$EXTMAX"]))
+    assert extents[0] == extents[1], extents
+
+
+def test_a_dxf_file_without_content_is_refused(server):
+    hidden = [{"layer": "marks", "visible": False}]
+    answer = figure(server, 422, layers=hidden, format="dxf", **TOP)
+    assert answer.json()["field"] == "format" and "Show a layer" in answer.json()["detail"], answer
+
+
+def test_dxf(server):
+    """A reader of CAD files finds no problem, and the areas of the quantities."""
+    answer = figure(server, format="dxf", **{**TOP, "scale": 2.5})
+    assert answer.headers["Content-Type"] == "image/vnd.dxf"
+    assert answer.headers["Content-Disposition"].endswith("sheet-top-1-2.5.dxf")
+    document = drawing_of(answer)
     assert document.dxfversion == "AC1021" and document.header["$INSUNITS"] == 4
     colors = {layer.dxf.name: layer.rgb for layer in document.layers}
     assert colors["Schäden 損傷 - Riß_ tief_breit"] == (255, 0, 0), colors
     assert colors["Schäden 損傷 - Salt"] == (0, 0, 255), colors
     quantities = {
         each["value"]: each["area_m2"] * 1e6
-        for each in server.ok("GET", f"{M}/layers/marks/quantities")["quantities"]
+        for each in server.ok("GET", f"{M}/layers/marks/quantities").json()["quantities"]
         if each.get("value")
     }
     areas, kinds = {}, {}
     for entity in document.modelspace():
-        data = [tag.value for tag in entity.get_xdata("STRATA")][1:]
-        known = dict(zip(data[::2], data[1::2]))
+        known = attributes_of(entity)
         assert known["layer"] == "Schäden 損傷", known
         kinds.setdefault(known["value"], set()).add(entity.dxftype())
         if entity.dxftype() != "LWPOLYLINE":
@@ -221,6 +289,8 @@ def test_dxf(server):
         assert entity.closed
         ring = numpy.array([point[:2] for point in entity.get_points("xy")])
         assert ring.min() > -1 and ring.max() < 101  # millimeters on the object
+        if known["value"] == 3:  # y points up
+            assert abs(ring.min(axis=0) - (80, 60)).max() < 0.3, ring
         areas.setdefault(known["value"], {})[known["area_mm2"]] = areas.get(known["value"], {}).get(
             known["area_mm2"], []
         ) + [abs(area_of(ring))]

@@ -9,7 +9,9 @@
 #include <numeric>
 #include <sstream>
 
+#include "figure/area_pattern.h"
 #include "figure/files.h"
+#include "figure/layer_areas.h"
 #include "figure/layout.h"
 #include "figure/sheet_rows.h"
 #include "figure/text.h"
@@ -438,6 +440,62 @@ TEST(Areas, AreDrawnWithTheirHolesAndPatterns) {
   EXPECT_NEAR(ink[1], border + (1 - border) * (0.4 + 0.6 * 0.3), 0.03);
   const double dots = 3.14159 * 0.32 * 0.32;
   EXPECT_NEAR(ink[2], border + (1 - border) * (dots + (1 - dots) * 0.3), 0.03);
+}
+
+// A class with many small pieces that are far from each other must not fill the box around them.
+TEST(Areas, APatternCoversOnlyItsPieces) {
+  for (const Pattern pattern : {Pattern::hatch, Pattern::dots})
+    for (const double angle : {0.0, 30.0, 90.0}) {
+      Area area{{}, {200, 0, 0, 255}, pattern, angle, 2};
+      for (int i = 0; i < 20; ++i) {
+        const double x = 100.0 * i, y = i % 2 == 0 ? 0 : 2000;
+        area.rings.push_back({{x, y}, {x + 10, y}, {x + 10, y + 10}, {x, y + 10}});
+      }
+      const AreaPattern found = pattern_of(area);
+      const double margin = 2;
+      const auto is_near = [&](const glm::dvec2& point) {
+        return std::ranges::any_of(area.rings, [&](const auto& ring) {
+          return point.x > ring[0].x - margin && point.y > ring[0].y - margin &&
+                 point.x < ring[2].x + margin && point.y < ring[2].y + margin;
+        });
+      };
+      for (const auto& [from, to] : found.lines) EXPECT_TRUE(is_near((from + to) / 2.0));
+      for (const glm::dvec2& dot : found.dots) EXPECT_TRUE(is_near(dot)) << dot.x << " " << dot.y;
+      const std::size_t count = found.lines.size() + found.dots.size();
+      EXPECT_GE(count, 20u * (pattern == Pattern::hatch ? 5 : 25));
+      EXPECT_LE(count, 20u * (pattern == Pattern::hatch ? 9 : 45));
+    }
+}
+
+// An area that continues beyond the drawing has no border at its edge.
+TEST(Areas, EndAtTheEdgeOfTheDrawing) {
+  Sheet sheet;
+  sheet.size = {40, 40};
+  sheet.drawing = {{10, 10}, {20, 20}};
+  Group group;
+  group.id = "areas-damage";
+  group.in_drawing = true;
+  group.areas.push_back(
+      {{{{5, 5}, {35, 5}, {35, 35}, {5, 35}}}, {200, 0, 0, 255}, Pattern::outline, 45, 2});
+  sheet.groups.push_back(std::move(group));
+  const Picture white{1, 1, {255, 255, 255, 255}};
+  Progress progress;
+  ASSERT_TRUE(sheet_rows(sheet, white, 127, progress, [&](std::span<const std::uint8_t> rgb) {
+    EXPECT_TRUE(std::ranges::all_of(rgb, [](std::uint8_t each) { return each == 255; }));
+    return true;
+  }));
+}
+
+TEST(Areas, HaveDifferentIdsForLargeNumbers) {
+  LayerVectors layer;
+  layer.id = "units";
+  for (const double key : {1234567.0, 1234568.0, 0.5})
+    layer.areas.push_back({"", key, {}, Pattern::solid, 45, 1, {}});
+  const Group group = area_group(layer);
+  ASSERT_EQ(group.parts.size(), 3u);
+  EXPECT_EQ(group.parts[0].id, "areas-units-1234567");
+  EXPECT_EQ(group.parts[1].id, "areas-units-1234568");
+  EXPECT_EQ(group.parts[2].id, "areas-units-0.5");
 }
 
 TEST(Areas, AreNamedGroupsInSvg) {

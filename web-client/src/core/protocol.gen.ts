@@ -3837,7 +3837,7 @@ export interface FrameRequest {
   format?: "jpeg" | "png";
 }
 
-/** Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. Not with `rollout`. */
+/** Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. `areas`, `legend`, `title`, `caption`, `credit`, `looks`, `light`, `provisional` and `continued` then have no effect, so the same request can create files of several formats. Not with `rollout`. */
 export type FigureFormat = "png" | "tiff" | "svg" | "pdf" | "dxf";
 
 /** Direction of a figure, relative to the model's up. In the view from the top, the front of the model is at the bottom. For a model in map coordinates with z up, this is the plan, with y pointing up. */

@@ -115,6 +115,8 @@ export function figureChoices(kept: unknown): FigureChoices {
   };
 }
 
+/** Returns whether the figure is a sheet with texts, a legend and a picture. */
+export const hasSheet = ({ format }: FigureChoices): boolean => format !== "dxf";
 /** Returns whether the user can choose between pixels and outlines. */
 export const hasAreas = ({ from, format }: FigureChoices): boolean =>
   from !== "rollout" && (format === "pdf" || format === "svg");
@@ -131,15 +133,16 @@ export function figureRequest(
   labels: FigureLabels | null,
   rollout: FigureRollout | null = null,
 ): FigureRequest | null {
-  const { from, scale, orientation, areas, tolerance_mm: tolerance, ...choices } = chosen;
+  const { from, scale, orientation, areas, tolerance_mm: tolerance, legend, ...choices } = chosen;
   const content = contentOf(shown, from, face, labels, rollout);
   if (!content) return null;
   const written = Object.entries(words).flatMap(([name, text]) =>
-    text.trim() === "" ? [] : [[name, text.trim()]],
+    text.trim() === "" || !hasSheet(chosen) ? [] : [[name, text.trim()]],
   );
   return {
     ...content,
     ...choices,
+    ...(hasSheet(chosen) ? { legend } : {}),
     ...(scale === null ? {} : { scale }),
     ...(orientation === null ? {} : { orientation }),
     ...(hasAreas(chosen) && areas === "outlines" ? { areas } : {}),
@@ -166,10 +169,15 @@ function contentOf(
   return { ...shown, ...direction, ...(labels ? { labels } : {}) };
 }
 
-/** Requests the same sheet as a small image. */
+/**
+ * Requests the same sheet as a small image. For a drawing without a sheet, this is the same part of
+ * the object.
+ */
 export function previewRequest(request: FigureRequest): FigureRequest {
+  const bare = { legend: false, title: "", caption: "", credit: "" };
   const preview: FigureRequest = {
     ...request,
+    ...(request.format === "dxf" ? bare : {}),
     format: "png",
     dpi: kPreviewDpi[request.paper ?? "a4"],
   };

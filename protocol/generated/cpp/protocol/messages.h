@@ -3777,7 +3777,7 @@ Result<void> check(const FrameRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
 
-// Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. Not with `rollout`.
+// Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. `areas`, `legend`, `title`, `caption`, `credit`, `looks`, `light`, `provisional` and `continued` then have no effect, so the same request can create files of several formats. Not with `rollout`.
 enum class FigureFormat { png, tiff, svg, pdf, dxf };
 std::string_view name(FigureFormat value);
 void read(const nlohmann::json& json, FigureFormat& value);

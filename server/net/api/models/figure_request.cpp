@@ -220,9 +220,14 @@ Result<FigureRequest> figure_request(const RouteContext& context, const Request&
   figure.format = static_cast<figure::Format>(body.format.value_or(protocol::FigureFormat::pdf));
   STRATA_TRY(read_areas(body, figure));
   const Model model = figure.room->model();
-  figure.captions = {body.title.value_or(model.name), body.caption.value_or(""),
-                     body.credit.value_or(model.credit), body.continued};
-  figure.legend = body.legend;
+  // In a DXF file, they would only take space from the drawing.
+  if (figure.format != figure::Format::dxf) {
+    figure.captions = {body.title.value_or(model.name), body.caption.value_or(""),
+                       body.credit.value_or(model.credit), body.continued};
+    figure.legend = body.legend;
+  } else {
+    figure.legend = false;
+  }
   figure.waiting_label = body.provisional;
   return figure;
 }

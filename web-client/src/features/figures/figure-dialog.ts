@@ -9,6 +9,7 @@ import {
   figureRequest,
   hasAreas,
   hasOutlines,
+  hasSheet,
   isDpi,
   kAreas,
   kDpiRange,
@@ -144,8 +145,8 @@ export class StrataFigureDialog extends LitElement {
     return html`<strata-dialog vast heading=${view ? words.title_of_view(view.name) : words.title} way_out=${this._file.running ? "" : texts.close} @closed=${this.onClosed}>
       <div class="editor">
         <form id="figure" class="fields" novalidate @submit=${this.onSubmit}>
-          ${this.direction()} ${this.scale()} ${this.sheet()} ${this.resolution()} ${this.format()} ${this.areas()} ${this.written()}
-          ${this.legend()}
+          ${this.direction()} ${this.scale()} ${this.sheet()} ${hasSheet(this._choices) ? this.resolution() : nothing} ${this.format()} ${this.areas()}
+          ${hasSheet(this._choices) ? html`${this.written()} ${this.legend()}` : nothing} ${this.labels()}
         </form>
         <div class="sheet">
           ${this.warning()}
@@ -341,17 +342,17 @@ export class StrataFigureDialog extends LitElement {
           <input type="checkbox" name="legend" .checked=${this._choices.legend} @change=${(event: Event) => this.choose({ legend: (event.target as HTMLInputElement).checked })} />
           ${words.legend}
         </label>
-      </div>
-      ${
-        this._choices.from === "rollout"
-          ? nothing
-          : labelFields(this.session, {
-              wrong: this.isWrong("labels"),
-              told: this.toldAt("labels"),
-              problem: this.problemOf("labels"),
-              choose: (labels) => this.label(labels),
-            })
-      }`;
+      </div>`;
+  }
+
+  private labels(): TemplateResult | typeof nothing {
+    if (this._choices.from === "rollout") return nothing;
+    return labelFields(this.session, {
+      wrong: this.isWrong("labels"),
+      told: this.toldAt("labels"),
+      problem: this.problemOf("labels"),
+      choose: (labels) => this.label(labels),
+    });
   }
 
   private warning(): TemplateResult | typeof nothing {

@@ -265,6 +265,19 @@ describe("what is asked for", () => {
     expect(asked(usualFigure())).toEqual([undefined, undefined]);
   });
 
+  it("has no texts and no legend in DXF files, because they would have no effect", () => {
+    const words = { title: "West wall", caption: "", credit: "Museum" };
+    const chosen = { ...usualFigure(), legend: true };
+    const asked = (format: "dxf" | "pdf") =>
+      figureRequest(shown, { ...chosen, format }, words, null, null)!;
+    const { title, credit, legend } = asked("pdf");
+    expect([title, credit, legend]).toEqual(["West wall", "Museum", true]);
+    for (const name of ["title", "caption", "credit", "legend"])
+      expect(asked("dxf")).not.toHaveProperty(name);
+    // the server's defaults would make the drawing smaller
+    expect(previewRequest(asked("dxf"))).toMatchObject({ legend: false, title: "", credit: "" });
+  });
+
   it("is the same sheet as a small picture for the preview", () => {
     const request = figureRequest(
       shown,
