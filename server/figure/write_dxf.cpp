@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 
 #include "core/text/printable.h"
@@ -37,6 +38,12 @@ enum Handle : unsigned {
   kPaperSpace,
   kRootDictionary,
   kGroupDictionary,
+  kLayoutDictionary,
+  kPlotStyleDictionary,
+  kPlotStyle,
+  kModelLayout,
+  kPaperLayout,
+  kFirstBlock,  // four objects
   kFirstFree = 0x30
 };
 
@@ -101,15 +108,8 @@ std::int64_t true_color(const Rgba& color) {
 
 double area_of(const OutlinePolygon& polygon) {
   double area = 0;
-  for (std::size_t k = 0; k < polygon.rings.size(); ++k) {
-    const OutlineRing& ring = polygon.rings[k];
-    double twice = 0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const glm::dvec2 a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
-      twice += a.x * b.y - b.x * a.y;
-    }
-    area += (k == 0 ? 1 : -1) * std::abs(twice / 2);
-  }
+  for (std::size_t i = 0; i < polygon.rings.size(); ++i)
+    area += (i == 0 ? 1 : -1) * std::abs(signed_area(polygon.rings[i]));
   return area;
 }
 
@@ -161,7 +161,8 @@ class DxfWriter {
   // Returns the facts of the written file.
   Result<Facts> write(const Facts& stated) {
     write_header(stated);
-    write_tables();
+    write_classes();
+    write_tables(stated);
     write_blocks();
     begin_section("ENTITIES");
     STRATA_TRY(write_entities());
@@ -178,7 +179,7 @@ class DxfWriter {
     return drawing_.top_left + glm::dvec2(from_corner.x, -from_corner.y);
   }
 
-  // ── entities ───────────────────────────────────────────────────────────────────────────────────
+  // ── entities ──────────
 
   Result<void> write_entities() {
     auto layer_of_file = layers_.begin();
@@ -334,7 +335,7 @@ class DxfWriter {
     }
   }
 
-  // ── sections ───────────────────────────────────────────────────────────────────────────────────
+  // ── sections ──────────
 
   void begin_section(const char* name) {
     pairs_.text(0, "SECTION");
@@ -362,6 +363,21 @@ class DxfWriter {
     pairs_.text(0, "ENDSEC");
   }
 
+  // Classes of objects that are not in every DXF file.
+  void write_classes() {
+    begin_section("CLASSES");
+    for (const auto& [type, name] :
+         {std::pair("ACDBDICTIONARYWDFLT", "AcDbDictionaryWithDefault"),
+          std::pair("ACDBPLACEHOLDER", "AcDbPlaceHolder"), std::pair("LAYOUT", "AcDbLayout")}) {
+      pairs_.text(0, "CLASS");
+      pairs_.text(1, type);
+      pairs_.text(2, name);
+      pairs_.text(3, "ObjectDBX Classes");
+      for (const int code : {90, 91, 280, 281}) pairs_.whole(code, 0);
+    }
+    pairs_.text(0, "ENDSEC");
+  }
+
   void begin_table(const char* name, unsigned handle, std::size_t entries) {
     pairs_.text(0, "TABLE");
     pairs_.text(2, name);
@@ -385,12 +401,40 @@ class DxfWriter {
     pairs_.whole(62, kWhite);
     if (layer.color) pairs_.whole(420, true_color(*layer.color));
     pairs_.text(6, "Continuous");
+    pairs_.whole(370, -3);  // the default width of lines
+    pairs_.handle(390, kPlotStyle);
   }
 
-  void write_tables() {
+  // A window that shows all content.
+  void write_viewport(const Facts& stated) {
+    const bool has_content = stated.low.x <= stated.high.x;
+    const glm::dvec2 size = has_content ? stated.high - stated.low : glm::dvec2(1);
+    begin_record("VPORT", kViewportTable, "AcDbViewportTableRecord");
+    pairs_.text(2, "*Active");
+    pairs_.whole(70, 0);
+    pairs_.point(10, {0, 0});
+    pairs_.point(11, {1, 1});
+    pairs_.point(12, has_content ? (stated.low + stated.high) / 2.0 : glm::dvec2(0));
+    for (const int code : {13, 14, 15}) pairs_.point(code, glm::dvec2(code == 13 ? 0 : 10));
+    pairs_.point(16, {0, 0});  // from above
+    pairs_.number(36, 1);
+    pairs_.space_point(17, {0, 0});
+    pairs_.number(40, std::max({size.x, size.y, 1.0}) * 1.1);  // height
+    pairs_.number(41, 1);                                      // width / height
+    pairs_.number(42, 50);
+    for (const int code : {43, 44, 50, 51}) pairs_.number(code, 0);
+    pairs_.whole(71, 0);
+    pairs_.whole(72, 1000);
+    pairs_.whole(73, 1);
+    pairs_.whole(74, 3);
+    for (const int code : {75, 76, 77, 78, 281, 65}) pairs_.whole(code, 0);
+  }
+
+  void write_tables(const Facts& stated) {
     begin_section("TABLES");
     const auto end = [&] { pairs_.text(0, "ENDTAB"); };
-    begin_table("VPORT", kViewportTable, 0);
+    begin_table("VPORT", kViewportTable, 1);
+    write_viewport(stated);
     end();
     begin_table("LTYPE", kLinetypeTable, 3);
     for (const char* name : {"ByBlock", "ByLayer", "Continuous"}) {
@@ -441,14 +485,19 @@ class DxfWriter {
     pairs_.whole(70, 0);
     end();
     begin_table("BLOCK_RECORD", kBlockTable, 2);
-    for (const auto& [name, handle] :
-         {std::pair("*Model_Space", kModelSpace), std::pair("*Paper_Space", kPaperSpace)}) {
+    for (const auto& [name, handle, layout] :
+         {std::tuple("*Model_Space", kModelSpace, kModelLayout),
+          std::tuple("*Paper_Space", kPaperSpace, kPaperLayout)}) {
       pairs_.text(0, "BLOCK_RECORD");
       pairs_.handle(5, handle);
       pairs_.handle(330, kBlockTable);
       pairs_.text(100, "AcDbSymbolTableRecord");
       pairs_.text(100, "AcDbBlockTableRecord");
       pairs_.text(2, name);
+      pairs_.handle(340, layout);
+      pairs_.whole(70, 0);
+      pairs_.whole(280, 1);
+      pairs_.whole(281, 0);
     }
     end();
     pairs_.text(0, "ENDSEC");
@@ -456,7 +505,7 @@ class DxfWriter {
 
   void write_blocks() {
     begin_section("BLOCKS");
-    unsigned handle = kGroupDictionary + 1;  // free handles below kFirstFree
+    unsigned handle = kFirstBlock;
     for (const auto& [name, record] :
          {std::pair("*Model_Space", kModelSpace), std::pair("*Paper_Space", kPaperSpace)}) {
       const auto begin = [&, record = record](const char* type, const char* subclass) {
@@ -480,18 +529,82 @@ class DxfWriter {
 
   void write_objects() {
     begin_section("OBJECTS");
-    const auto dictionary = [&](unsigned handle, unsigned owner) {
-      pairs_.text(0, "DICTIONARY");
+    const auto dictionary = [&](const char* type, unsigned handle, unsigned owner,
+                                std::initializer_list<std::pair<const char*, unsigned>> entries) {
+      pairs_.text(0, type);
       pairs_.handle(5, handle);
       pairs_.handle(330, owner);
       pairs_.text(100, "AcDbDictionary");
       pairs_.whole(281, 1);
+      for (const auto& [name, entry] : entries) {
+        pairs_.text(3, name);
+        pairs_.handle(350, entry);
+      }
     };
-    dictionary(kRootDictionary, 0);
-    pairs_.text(3, "ACAD_GROUP");
-    pairs_.handle(350, kGroupDictionary);
-    dictionary(kGroupDictionary, kRootDictionary);
+    dictionary("DICTIONARY", kRootDictionary, 0,
+               {{"ACAD_GROUP", kGroupDictionary},
+                {"ACAD_LAYOUT", kLayoutDictionary},
+                {"ACAD_PLOTSTYLENAME", kPlotStyleDictionary}});
+    dictionary("DICTIONARY", kGroupDictionary, kRootDictionary, {});
+    dictionary("DICTIONARY", kLayoutDictionary, kRootDictionary,
+               {{"Model", kModelLayout}, {"Layout1", kPaperLayout}});
+    dictionary("ACDBDICTIONARYWDFLT", kPlotStyleDictionary, kRootDictionary,
+               {{"Normal", kPlotStyle}});
+    pairs_.text(100, "AcDbDictionaryWithDefault");
+    pairs_.handle(340, kPlotStyle);
+    pairs_.text(0, "ACDBPLACEHOLDER");
+    pairs_.handle(5, kPlotStyle);
+    pairs_.handle(330, kPlotStyleDictionary);
+    write_layout("Model", kModelLayout, kModelSpace, 0);
+    write_layout("Layout1", kPaperLayout, kPaperSpace, 1);
     pairs_.text(0, "ENDSEC");
+  }
+
+  // A layout without content of its own, on A4.
+  void write_layout(const char* name, unsigned handle, unsigned block, int order) {
+    constexpr int kIsModel = 1024;
+    const glm::dvec2 paper(297, 210);
+    pairs_.text(0, "LAYOUT");
+    pairs_.handle(5, handle);
+    pairs_.handle(330, kLayoutDictionary);
+    pairs_.text(100, "AcDbPlotSettings");
+    pairs_.text(1, "");
+    pairs_.text(2, "none_device");
+    pairs_.text(4, "A4");
+    pairs_.text(6, "");
+    for (const int code : {40, 41, 42, 43}) pairs_.number(code, 0);
+    pairs_.number(44, paper.x);
+    pairs_.number(45, paper.y);
+    for (const int code : {46, 47, 48, 49, 140, 141}) pairs_.number(code, 0);
+    pairs_.number(142, 1);
+    pairs_.number(143, 1);
+    pairs_.whole(70, order == 0 ? kIsModel : 0);
+    pairs_.whole(72, 1);  // millimeters
+    pairs_.whole(73, 0);
+    pairs_.whole(74, 5);
+    pairs_.text(7, "");
+    pairs_.whole(75, 16);
+    pairs_.whole(76, 0);
+    pairs_.whole(77, 2);
+    pairs_.whole(78, 300);
+    pairs_.number(147, 1);
+    pairs_.number(148, 0);
+    pairs_.number(149, 0);
+    pairs_.text(100, "AcDbLayout");
+    pairs_.text(1, name);
+    pairs_.whole(70, 1);
+    pairs_.whole(71, order);
+    pairs_.point(10, {0, 0});
+    pairs_.point(11, paper);
+    pairs_.space_point(12, {0, 0});
+    pairs_.space_point(14, {0, 0});
+    pairs_.space_point(15, paper);
+    pairs_.number(146, 0);
+    pairs_.space_point(13, {0, 0});
+    pairs_.space_point(16, {1, 0});
+    pairs_.space_point(17, {0, 1});
+    pairs_.whole(76, 0);
+    pairs_.handle(330, block);
   }
 
   const DxfDrawing& drawing_;

@@ -9,16 +9,6 @@
 namespace strata::figure {
 namespace {
 
-// Positive if the inside is on the left of somebody who walks along the ring on the page.
-double area_of(const OutlineRing& ring) {
-  double twice = 0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const glm::dvec2 a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
-    twice += a.x * b.y - b.x * a.y;
-  }
-  return -twice / 2;  // y points down
-}
-
 // Joins lines to polygons.
 class Assembly {
  public:
@@ -75,7 +65,7 @@ class Assembly {
         ring.insert(ring.end(), points.rbegin(),
                     points.rbegin() + static_cast<std::ptrdiff_t>(count));
     }
-    const bool is_outer = area_of(ring) > 0;
+    const bool is_outer = signed_area(ring) > 0;
     polygon.rings.insert(is_outer ? polygon.rings.begin() : polygon.rings.end(), std::move(ring));
   }
 
@@ -86,6 +76,15 @@ class Assembly {
 };
 
 }  // namespace
+
+double signed_area(const OutlineRing& ring) {
+  double twice = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const glm::dvec2 a = ring[i] - ring[0], b = ring[(i + 1) % ring.size()] - ring[0];
+    twice += a.x * b.y - b.x * a.y;
+  }
+  return -twice / 2;  // y points down
+}
 
 Result<LabelOutlines> label_outlines(LabelGrid grid, const OutlineSettings& settings,
                                      const Progress& progress) {

@@ -13,6 +13,9 @@ namespace strata::figure {
 
 // The corners of a ring. The first corner is not repeated at the end.
 using OutlineRing = std::vector<glm::dvec2>;
+// Returns the area. It is positive if the inside is on the left of somebody who walks along the
+// ring on the page.
+double signed_area(const OutlineRing& ring);
 struct OutlinePolygon {
   std::vector<OutlineRing> rings;  // the outer ring first, and then the holes
 };

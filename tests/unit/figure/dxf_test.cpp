@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace strata::figure {
@@ -96,6 +97,29 @@ TEST(Dxf, TheHeaderStatesTheExtentAndTheNextHandle) {
   }
   EXPECT_GT(highest, 0x30u);
   EXPECT_GT(next, highest);
+}
+
+// AutoCAD opens only files in which all of these handles exist.
+TEST(Dxf, AllReferencesExist) {
+  DxfDrawing wanted = drawing();
+  wanted.areas = {{"damage", "Damage", 1, {square("Loss", 1)}, {}}};
+  const auto pairs = written(wanted);
+  std::multiset<std::string> handles{"0"};
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if ((pairs[i].first == 5 || pairs[i].first == 105) && pairs[i - 1].second != "$HANDSEED")
+      handles.insert(pairs[i].second);
+  for (const std::string& handle : handles) EXPECT_EQ(handles.count(handle), 1u) << handle;
+  for (const auto& [code, value] : pairs)
+    if (code == 330 || code == 340 || code == 350 || code == 390) {
+      EXPECT_TRUE(handles.contains(value)) << code << " " << value;
+    }
+  for (const auto& layer : all(pairs, "LAYER")) EXPECT_EQ(values(layer, 390).size(), 1u);
+  for (const auto& block : all(pairs, "BLOCK_RECORD")) EXPECT_EQ(values(block, 340).size(), 1u);
+  EXPECT_EQ(all(pairs, "LAYOUT").size(), 2u);
+  const auto viewports = all(pairs, "VPORT");
+  ASSERT_EQ(viewports.size(), 1u);
+  EXPECT_EQ(values(viewports[0], 12).at(0), "1010");  // the middle of the square
+  EXPECT_EQ(values(viewports[0], 22).at(0), "495");
 }
 
 TEST(Dxf, EachMarkHasItsColorOpacityAndName) {
