@@ -227,7 +227,7 @@ def drawing_of(answer):
 
 
 def attributes_of(entity):
-    data = [tag.value for tag in entity.get_xdata("STRATA")][1:]
+    data = [tag.value for tag in entity.get_xdata("STRATA")]
     return dict(zip(data[::2], data[1::2]))
 
 
