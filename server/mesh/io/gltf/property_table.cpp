@@ -93,7 +93,7 @@ class TableWriter {
   }
 
   std::string describe(const std::string& name, nlohmann::json description) {
-    const std::string id = properties_.of(name);
+    std::string id = properties_.of(name);
     description["name"] = id == name ? name : name + " (" + id + ")";
     described_[id] = std::move(description);
     return id;

@@ -104,7 +104,7 @@ Result<room::UnrolledLine> unrolled_line(const protocol::UnrolledLine& body, dou
   auto fit = read_fit({body.axis, body.shape, body.radius, body.half_angle, body.side, body.cut});
   if (!fit) return at_field(fit.error(), "unrolled." + fit.error().field);
   room::UnrolledLine line;
-  line.fit = std::move(*fit);
+  line.fit = *fit;
   if (body.cut) line.cut = glm::radians(*body.cut);
   for (const glm::dvec2& point : body.path) line.path.push_back(in_model_units(1, unit) * point);
   line.step = in_model_units(step_mm, unit);
