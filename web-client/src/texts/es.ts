@@ -1741,16 +1741,16 @@ export const texts = {
     save: "Guardar archivo",
   },
 
-  model_export: {
-    part: "Modelo 3D",
-    title: "Exportar modelo 3D",
-    open: "Exportar modelo 3D…",
-  },
   condition_report: {
     title: "Informe de estado de conservación",
     open: "Informe de estado de conservación…",
   },
 
+  model_export: {
+    part: "Modelo 3D",
+    title: "Exportar modelo 3D",
+    open: "Exportar modelo 3D…",
+  },
   tours: {
     title: "Recorridos",
     new: "Nuevo recorrido…",
