@@ -22,14 +22,19 @@ std::string plain_number(double value) {
   return {digits.data(), end.ptr};
 }
 
+Group group_of(const char* content, const LayerVectors& layer) {
+  Group group;
+  group.id = content + ("-" + layer.id);
+  group.name = layer.name;
+  group.opacity = layer.opacity;
+  group.in_drawing = true;
+  return group;
+}
+
 }  // namespace
 
 Group area_group(LayerVectors layer) {
-  Group group;
-  group.id = "areas-" + layer.id;
-  group.name = std::move(layer.name);
-  group.opacity = layer.opacity;
-  group.in_drawing = true;
+  Group group = group_of("areas", layer);
   for (ClassArea& of_class : layer.areas) {
     Area area{{}, of_class.color, of_class.pattern, of_class.angle, of_class.spacing_mm};
     for (OutlinePolygon& polygon : of_class.polygons)
@@ -43,11 +48,7 @@ Group area_group(LayerVectors layer) {
 }
 
 Group mark_group(LayerVectors layer) {
-  Group group;
-  group.id = "marks-" + layer.id;
-  group.name = std::move(layer.name);
-  group.opacity = layer.opacity;
-  group.in_drawing = true;
+  Group group = group_of("marks", layer);
   for (RecordMark& mark : layer.marks) {
     const double width = mark.points.size() > 1 ? kLine_mm : kPoint_mm;
     group.marks.push_back({std::move(mark.points), mark.color, width, kCasing_mm});

@@ -167,10 +167,9 @@ figure::LayerVectors vectors_of(const FigureRequest& request, const Layer& layer
 
 Result<figure::LayerVectors> areas_of(store::Store& store, const FigureRequest& request,
                                       const figure::Drawing& drawing, const glm::dvec2& corner,
-                                      const figure::Box& area, const Layer& layer,
+                                      const figure::Box& area, const Grid& grid, const Layer& layer,
                                       Progress& progress) {
   const auto palette = STRATA_TRY(colors_of(store, request, layer));
-  const Grid grid = grid_over(area.size, *request.outline_tolerance_mm);
   Classes classes(layer, *palette);
   auto labels = STRATA_TRY(labels_on(request, drawing, area, grid, layer, classes, progress));
   figure::OutlineSettings settings;
@@ -342,7 +341,7 @@ Result<FigureVectors> figure_vectors(store::Store& store, ByteBudget& budget,
     progress.begin_stage(
         0.05 + 0.4 * static_cast<double>(i) / static_cast<double>(outlined.size()),
         0.05 + 0.4 * static_cast<double>(i + 1) / static_cast<double>(outlined.size()));
-    auto found = STRATA_TRY(areas_of(store, request, drawing, area.corner, outlined_area,
+    auto found = STRATA_TRY(areas_of(store, request, drawing, area.corner, outlined_area, grid,
                                      request.layers[outlined[i]], progress));
     vectors.areas.push_back(std::move(found));
   }

@@ -271,13 +271,8 @@ Result<query::Profile> OpenRoom::QueriesPart::profile(const ProfileLine& line,
   if (const auto* seen = std::get_if<SeenLine>(&line))
     return query::profile_seen(*tree, room_.geometry_->origin, seen->camera, seen->path, views);
   if (const auto* unrolled = std::get_if<UnrolledLine>(&line)) {
-    auto fitted = room_.surface_lookup_->sheet(unrolled->fit, unrolled->cut, room_.model().up);
-    if (!fitted) {
-      Error problem = std::move(fitted.error());
-      problem.field = "unrolled." + problem.field;
-      return tl::unexpected(std::move(problem));
-    }
-    const mesh::RolloutRays rays(*tree, *room_.geometry_, (*fitted)->sheet);
+    const auto fitted = STRATA_TRY(fitted_sheet(unrolled->fit, unrolled->cut, "unrolled"));
+    const mesh::RolloutRays rays(*tree, *room_.geometry_, fitted->sheet);
     return query::profile_unrolled(rays, room_.geometry_->origin, unrolled->path, unrolled->step,
                                    views);
   }

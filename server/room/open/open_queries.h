@@ -82,6 +82,10 @@ class OpenRoom::QueriesPart final : public Queries {
   // `field` is the name of the region in errors.
   Result<query::TexelSelection> texels_like(const Selection::Like& like, At at,
                                             const mesh::SurfaceMap& map, const std::string& field);
+  // Errors are at members of `field`.
+  Result<std::shared_ptr<const mesh::FittedSheet>> fitted_sheet(const mesh::FitRequest& fit,
+                                                                const std::optional<double>& cut,
+                                                                const std::string& field);
   Result<query::TexelSelection> texels_unrolled(const Selection::Unrolled& unrolled,
                                                 const mesh::SurfaceMap& map,
                                                 const std::string& field);

@@ -120,17 +120,19 @@ Result<query::TexelSelection> OpenRoom::QueriesPart::texels_of(
   return texels;
 }
 
+Result<std::shared_ptr<const mesh::FittedSheet>> OpenRoom::QueriesPart::fitted_sheet(
+    const mesh::FitRequest& fit, const std::optional<double>& cut, const std::string& field) {
+  auto fitted = room_.surface_lookup_->sheet(fit, cut, room_.model().up);
+  if (!fitted) fitted.error().field = field + "." + fitted.error().field;
+  return fitted;
+}
+
 Result<query::TexelSelection> OpenRoom::QueriesPart::texels_unrolled(
     const Selection::Unrolled& unrolled, const mesh::SurfaceMap& map, const std::string& field) {
   const mesh::Geometry& geometry = *room_.geometry_;
-  auto fitted = room_.surface_lookup_->sheet(unrolled.fit, unrolled.cut, room_.model().up);
-  if (!fitted) {
-    Error problem = std::move(fitted.error());
-    problem.field = field + ".unrolled." + problem.field;
-    return tl::unexpected(std::move(problem));
-  }
+  const auto fitted = STRATA_TRY(fitted_sheet(unrolled.fit, unrolled.cut, field + ".unrolled"));
   const auto tree = room_.surface_lookup_->tree();
-  const mesh::RolloutRays rays(*tree, geometry, (*fitted)->sheet);
+  const mesh::RolloutRays rays(*tree, geometry, fitted->sheet);
   const mesh::SheetArea area(unrolled.polygons, unrolled.strokes);
   return query::select_unrolled(map, rays, geometry.origin, area, mesh::background_threads());
 }

@@ -1,7 +1,6 @@
 #include "net/api/layers/region_reader.h"
 
 #include <algorithm>
-#include <glm/trigonometric.hpp>
 
 #include "domain/layers/layer.h"
 #include "domain/scene/model.h"
@@ -75,10 +74,9 @@ Result<room::Selection::Like> RegionReader::like(protocol::Like& body,
 
 Result<room::Selection::Unrolled> RegionReader::unrolled(const protocol::Unrolled& body,
                                                          const std::string& field) const {
-  auto fit = read_fit({body.axis, body.shape, body.radius, body.half_angle, body.side, body.cut});
-  if (!fit) return at_field(fit.error(), field + "." + fit.error().field);
-  room::Selection::Unrolled unrolled{.fit = *fit};
-  if (body.cut) unrolled.cut = glm::radians(*body.cut);
+  const auto sheet = read_sheet(body);
+  if (!sheet) return at_field(sheet.error(), field + "." + sheet.error().field);
+  room::Selection::Unrolled unrolled{.fit = sheet->fit, .cut = sheet->cut};
   const double units_per_mm = in_model_units(1, room_.model().unit);
   std::size_t points = 0;
   for (const auto& polygon : body.polygons.value_or(std::vector<protocol::SheetOutline>{})) {

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <glm/trigonometric.hpp>
 
 #include "domain/scene/model.h"
 #include "domain/scene/units.h"
@@ -101,11 +100,11 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
 
 Result<room::UnrolledLine> unrolled_line(const protocol::UnrolledLine& body, double step_mm,
                                          Unit unit) {
-  auto fit = read_fit({body.axis, body.shape, body.radius, body.half_angle, body.side, body.cut});
-  if (!fit) return at_field(fit.error(), "unrolled." + fit.error().field);
+  const auto sheet = read_sheet(body);
+  if (!sheet) return at_field(sheet.error(), "unrolled." + sheet.error().field);
   room::UnrolledLine line;
-  line.fit = *fit;
-  if (body.cut) line.cut = glm::radians(*body.cut);
+  line.fit = sheet->fit;
+  line.cut = sheet->cut;
   for (const glm::dvec2& point : body.path) line.path.push_back(in_model_units(1, unit) * point);
   line.step = in_model_units(step_mm, unit);
   return line;

@@ -1,7 +1,5 @@
 #include "net/api/models/figure_request.h"
 
-#include <glm/trigonometric.hpp>
-
 #include "domain/layers/layer.h"
 #include "domain/scene/model.h"
 #include "domain/tables/table.h"
@@ -110,10 +108,9 @@ Result<void> read_unrolled(const protocol::FigureRequest& body, FigureRequest& f
   if (body.normal) return refused("normal");
   if (body.center) return refused("center");
   if (body.labels) return refused("labels");
-  const auto fit = read_fit(*body.rollout);
-  if (!fit) return at_field(fit.error(), "rollout." + fit.error().field);
-  figure.rollout.emplace(FigureRequest::Rollout{*fit, {}, body.rollout->relief});
-  if (body.rollout->cut) figure.rollout->cut = glm::radians(*body.rollout->cut);
+  const auto sheet = read_sheet(*body.rollout);
+  if (!sheet) return at_field(sheet.error(), "rollout." + sheet.error().field);
+  figure.rollout.emplace(FigureRequest::Rollout{sheet->fit, sheet->cut, body.rollout->relief});
   figure.from = "rollout";
   return {};
 }
@@ -220,14 +217,12 @@ Result<FigureRequest> figure_request(const RouteContext& context, const Request&
   figure.format = static_cast<figure::Format>(body.format.value_or(protocol::FigureFormat::pdf));
   STRATA_TRY(read_areas(body, figure));
   const Model model = figure.room->model();
-  // In a DXF file, they would only take space from the drawing.
-  if (figure.format != figure::Format::dxf) {
+  // In a DXF file, a legend and texts would only take space from the drawing.
+  const bool has_sheet = figure.format != figure::Format::dxf;
+  figure.legend = has_sheet && body.legend;
+  if (has_sheet)
     figure.captions = {body.title.value_or(model.name), body.caption.value_or(""),
                        body.credit.value_or(model.credit), body.continued};
-    figure.legend = body.legend;
-  } else {
-    figure.legend = false;
-  }
   figure.waiting_label = body.provisional;
   return figure;
 }

@@ -16,8 +16,9 @@ mesh::DevelopedShape shape_of(protocol::RolloutShape shape) {
 
 }  // namespace
 
-Result<mesh::FitRequest> read_fit(const protocol::FigureRollout& body) {
-  mesh::FitRequest fit;
+Result<SheetRequest> read_sheet(const protocol::FigureRollout& body) {
+  SheetRequest sheet;
+  mesh::FitRequest& fit = sheet.fit;
   if (body.axis) {
     if (!(glm::length(body.axis->direction) > 1e-12))
       return fail(ErrorCode::invalid, "Invalid direction",
@@ -41,7 +42,8 @@ Result<mesh::FitRequest> read_fit(const protocol::FigureRollout& body) {
   if (body.side)
     fit.side = *body.side == protocol::RolloutSide::inside ? mesh::RolloutSide::inside
                                                            : mesh::RolloutSide::outside;
-  return fit;
+  if (body.cut) sheet.cut = glm::radians(*body.cut);
+  return sheet;
 }
 
 }  // namespace strata::net

@@ -30,10 +30,9 @@ constexpr double kMmPerMetre = 1000;
 Result<app::RolloutRequest> read_rollout(const RouteContext& context, const Request& request,
                                          const protocol::RolloutRequest& body) {
   app::RolloutRequest rollout;
-  auto fit = STRATA_TRY(read_fit(
-      {body.axis, body.shape, body.radius, body.half_angle, body.side, body.cut, body.relief}));
-  rollout.fit = fit;
-  if (body.cut) rollout.cut = glm::radians(*body.cut);
+  const auto sheet = STRATA_TRY(read_sheet(body));
+  rollout.fit = sheet.fit;
+  rollout.cut = sheet.cut;
   auto room = STRATA_TRY(open_room(context, request));
   rollout.room = std::move(room);
   rollout.role = request.role();
