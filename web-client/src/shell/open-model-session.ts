@@ -6,7 +6,8 @@
 // the brush and the edits. `together` contains the participants and the followed view, `cursors`
 // their pointers. `views` are the saved views, `surveys` the other surveys of the object,
 // `tours` the tours, `measuring` the measurement, `figures` the figures to scale, `reports` the
-// condition reports, and `exports` the 3D models for other programs. `face` is the face to pick, and `past` the earlier states.
+// condition reports, and `exports` the 3D models for other programs. `face` is the face to pick, and
+// `past` the earlier states.
 // Elements subscribe to the parts' state and render it. They change it only through methods. The
 // file is long because it is the only one that connects the parts.
 

@@ -64,13 +64,15 @@ export const laterTexts = {
     save: "Bild speichern",
     paint_on: "Auf die abgerollte Oberfläche malen",
   },
+  layer_choice: {
+    none: "Dieses Modell hat keine Ebenen.",
+    visible: "Sichtbare Ebenen auswählen",
+  },
   export_dialog: {
     lead: "Erstellt eine GLB-Datei (glTF 2.0) für 3D-Betrachter und Programme wie Blender und Cesium. Längen sind in Metern.",
     layers: "Ebenen in der Textur",
     layers_hint:
       "Die Textur zeigt den Scan, die Oberflächenbilder, die Sie sehen, und diese Ebenen mit ihren Farben und ihrer Deckkraft.",
-    no_layers: "Dieses Modell hat keine Ebenen.",
-    visible_layers: "Die sichtbaren Ebenen auswählen",
     features: "Features mit Eigenschaften",
     features_hint:
       "Die Datensätze oder Klassen dieser Ebene, mit Namen, Flächen und Spalten. Programme, die EXT_mesh_features unterstützen, zeigen sie.",
@@ -118,8 +120,6 @@ export const laterTexts = {
     wrong_label: "Geben Sie eine Bezeichnung für diese Angabe ein.",
     layers: "Ebenen",
     layers_hint: "In den Zeichnungen aus Blickrichtungen, den Mengen und den Befunden.",
-    no_layers: "Dieses Modell hat keine Ebenen.",
-    visible_layers: "Sichtbare Ebenen auswählen",
     many_layers: (most) => `Wählen Sie höchstens ${most} Ebenen aus.`,
     sections: "Abschnitte",
     sections_hint: "Der Bericht hat die ausgewählten Abschnitte in dieser Reihenfolge.",

@@ -62,13 +62,15 @@ export const laterTexts = {
     save: "Save picture",
     paint_on: "Paint on the unrolled surface",
   },
+  layer_choice: {
+    none: "This model has no layers.",
+    visible: "Select the visible layers",
+  },
   export_dialog: {
     lead: "Creates a GLB file (glTF 2.0) for 3D viewers and for programs such as Blender and Cesium. Lengths are in meters.",
     layers: "Layers in the texture",
     layers_hint:
       "The texture shows the scan, the surface images that you see, and these layers with their colors and opacities.",
-    no_layers: "This model has no layers.",
-    visible_layers: "Select the visible layers",
     features: "Features with properties",
     features_hint:
       "The records or classes of this layer, with their names, areas and columns. Programs that support EXT_mesh_features show them.",
@@ -115,8 +117,6 @@ export const laterTexts = {
     wrong_label: "Enter a label for this value.",
     layers: "Layers",
     layers_hint: "In the drawings from directions, the quantities and the findings.",
-    no_layers: "This model has no layers.",
-    visible_layers: "Select the visible layers",
     many_layers: (most: number) => `Select at most ${most} layers.`,
     sections: "Sections",
     sections_hint: "The report has the selected sections in this order.",

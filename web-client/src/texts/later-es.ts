@@ -64,13 +64,15 @@ export const laterTexts = {
     save: "Guardar imagen",
     paint_on: "Pintar en la superficie desarrollada",
   },
+  layer_choice: {
+    none: "Este modelo no tiene capas.",
+    visible: "Seleccionar las capas visibles",
+  },
   export_dialog: {
     lead: "Crea un archivo GLB (glTF 2.0) para visores 3D y programas como Blender y Cesium. Las longitudes están en metros.",
     layers: "Capas en la textura",
     layers_hint:
       "La textura muestra el escaneo, las imágenes de la superficie que usted ve y estas capas con sus colores y opacidades.",
-    no_layers: "Este modelo no tiene capas.",
-    visible_layers: "Seleccionar las capas visibles",
     features: "Elementos con propiedades",
     features_hint:
       "Los registros o clases de esta capa, con sus nombres, áreas y columnas. Los muestran los programas compatibles con EXT_mesh_features.",
@@ -119,8 +121,6 @@ export const laterTexts = {
     wrong_label: "Introduzca una etiqueta para este valor.",
     layers: "Capas",
     layers_hint: "En los dibujos desde direcciones, las cantidades y los hallazgos.",
-    no_layers: "Este modelo no tiene capas.",
-    visible_layers: "Seleccionar las capas visibles",
     many_layers: (most) => `Seleccione ${most} capas como máximo.`,
     sections: "Apartados",
     sections_hint: "El informe tiene los apartados seleccionados en este orden.",

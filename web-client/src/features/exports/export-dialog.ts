@@ -1,10 +1,10 @@
 // <strata-export-dialog>: sets the options of a 3D model for other programs, and starts the job
 // that makes the file.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { pageLanguage, pageLocale } from "../../core/locale";
-import type { Layer, ProblemBody } from "../../core/types";
+import type { ProblemBody } from "../../core/types";
 import { labelOf } from "../../domain/cells";
 import {
   exportRequest,
@@ -15,6 +15,7 @@ import {
 } from "../../domain/exports";
 import { AwaitedFile, awaitedFileStyles } from "../../session/awaited-file";
 import { followSession } from "../../session/follow-session";
+import { idsOf, layerChoice } from "../../session/layer-choice";
 import type { ModelSession } from "../../session/model-session";
 import "../../ui/dialog";
 import { radioGroup } from "../../ui/radio-group";
@@ -99,26 +100,13 @@ export class StrataExportDialog extends LitElement {
   }
 
   private layers(): TemplateResult {
-    const all = [...this.session.layers.all].reverse(); // in the order of the layer list
-    const chosen = this.chosenLayers;
-    return html`<div class="group" role="group" aria-labelledby="layers" aria-describedby="layers_hint">
-      <span class="caption" id="layers">${words.layers}</span>
-      <p class="hint" id="layers_hint">${all.length > 0 ? words.layers_hint : words.no_layers}</p>
-      <div class="layers">
-        ${all.map(
-          (layer) =>
-            html`<label class="check">
-              <input type="checkbox" name="layer_${layer.id}" .checked=${chosen.includes(layer.id)} @change=${(event: Event) => this.chooseLayer(layer, (event.target as HTMLInputElement).checked)} />
-              ${labelOf(layer)}
-            </label>`,
-        )}
-      </div>
-      ${
-        all.length > 0
-          ? html`<button type="button" class="link" ?disabled=${this._input.layers === null} @click=${() => this.choose({ layers: null })}>${words.visible_layers}</button>`
-          : nothing
-      }
-    </div>`;
+    return layerChoice({
+      layers: this.session.layers,
+      chosen: this._input.layers,
+      label: words.layers,
+      hint: words.layers_hint,
+      choose: (layers) => this.choose({ layers }),
+    });
   }
 
   private features(): TemplateResult {
@@ -191,21 +179,12 @@ export class StrataExportDialog extends LitElement {
 
   /** The ids of the layers in the texture, from bottom to top. */
   private get chosenLayers(): number[] {
-    const { layers } = this.session;
-    const { layers: chosen } = this._input;
-    return layers.all
-      .filter((layer) => chosen?.includes(layer.id) ?? layers.visible(layer))
-      .map(({ id }) => id);
+    return idsOf(this.session.layers, this._input.layers);
   }
 
   private choose(change: Partial<ExportInput>): void {
     this._input = this.session.exports.draft = { ...this._input, ...change };
     this._problem = "";
-  }
-
-  private chooseLayer({ id }: Layer, on: boolean): void {
-    const others = this.chosenLayers.filter((each) => each !== id);
-    this.choose({ layers: on ? [...others, id] : others });
   }
 
   private refuse(problem: ProblemBody): void {

@@ -6,8 +6,7 @@ import { customElement, property, state } from "lit/decorators.js";
 import { languageInWords } from "../../core/languages";
 import { pageLanguage, pageLocale } from "../../core/locale";
 import type { ReportPart } from "../../core/protocol.gen";
-import type { Layer, ProblemBody } from "../../core/types";
-import { labelOf } from "../../domain/cells";
+import type { ProblemBody } from "../../core/types";
 import { kDirections } from "../../domain/figures";
 import {
   kMostFigures,
@@ -27,6 +26,7 @@ import {
 import { AwaitedFile, awaitedFileStyles } from "../../session/awaited-file";
 import { followSession } from "../../session/follow-session";
 import type { ShowFile } from "../../session/file-jobs";
+import { idsOf, layerChoice } from "../../session/layer-choice";
 import type { ModelSession } from "../../session/model-session";
 import "../../ui/dialog";
 import { focusWrong } from "./focus-wrong";
@@ -191,27 +191,14 @@ export class StrataReportDialog extends LitElement {
   }
 
   private layers(): TemplateResult {
-    const all = [...this.session.layers.all].reverse(); // in the order of the layer list
-    const chosen = this.chosenLayers;
-    return html`<div class="group" role="group" aria-labelledby="layers">
-      <span class="caption" id="layers">${words.layers}</span>
-      <p class="hint">${all.length > 0 ? words.layers_hint : words.no_layers}</p>
-      <div class="layers">
-        ${all.map(
-          (layer) =>
-            html`<label class="check">
-              <input type="checkbox" name="layer_${layer.id}" .checked=${chosen.includes(layer.id)} aria-invalid=${this._problems.has("layers")} aria-describedby=${this.toldAt("layers")} @change=${(event: Event) => this.chooseLayer(layer, (event.target as HTMLInputElement).checked)} />
-              ${labelOf(layer)}
-            </label>`,
-        )}
-      </div>
-      ${
-        this._input.layers
-          ? html`<button type="button" class="link" @click=${() => this.choose({ layers: null })}>${words.visible_layers}</button>`
-          : nothing
-      }
-      ${this.problemOf("layers")}
-    </div>`;
+    return layerChoice({
+      layers: this.session.layers,
+      chosen: this._input.layers,
+      label: words.layers,
+      hint: words.layers_hint,
+      choose: (layers) => this.choose({ layers }),
+      problem: { id: this.toldAt("layers"), text: this.problemOf("layers") },
+    });
   }
 
   private optionsOf(part: ReportPart): unknown {
@@ -283,11 +270,7 @@ export class StrataReportDialog extends LitElement {
 
   /** The ids of the layers in the report, from bottom to top. */
   private get chosenLayers(): number[] {
-    const { layers } = this.session;
-    const { layers: chosen } = this._input;
-    return layers.all
-      .filter((layer) => chosen?.includes(layer.id) ?? layers.visible(layer))
-      .map(({ id }) => id);
+    return idsOf(this.session.layers, this._input.layers);
   }
 
   /** Changes the input. Removes the problems of these fields, by default of the changed members. */
@@ -306,11 +289,6 @@ export class StrataReportDialog extends LitElement {
   private changeSections(sections: readonly SectionInput[]): void {
     const changed = this._input.sections.filter((each) => !sections.includes(each));
     this.choose({ sections }, ["sections", ...changed.map(({ part }) => `section:${part}`)]);
-  }
-
-  private chooseLayer({ id }: Layer, on: boolean): void {
-    const others = this.chosenLayers.filter((each) => each !== id);
-    this.choose({ layers: on ? [...others, id] : others });
   }
 
   private chooseFigures(chosen: readonly string[]): void {
