@@ -5,6 +5,7 @@ import struct
 
 import numpy
 import pytest
+from support.colored_layers import make_colored_layers
 from support.glb import Glb, pixel_at, read_png, validate
 from support.meshes import bumpy_ball, folded_grid
 from support.pictures import png
@@ -18,27 +19,7 @@ KNOWN_NOTES = {"UNSUPPORTED_EXTENSION", "UNUSED_OBJECT"}
 
 
 def make_layers(server):
-    ramp = {
-        "mode": "linear",
-        "min": 0,
-        "max": 10,
-        "points": [{"at": 0, "color": "#000000"}, {"at": 10, "color": "#ffcc00"}],
-    }
-    server.ok(
-        "POST", M + "/layers", {"name": "Wet", "type": "f32", "resolution": 2048, "palette": ramp}
-    )
-    classes = {
-        "mode": "categorical",
-        "points": [
-            {"at": 1, "color": "#ff0000", "label": "Crack"},
-            {"at": 2, "color": "#0000ff80", "label": "Blister"},
-        ],
-    }
-    server.ok(
-        "POST",
-        M + "/layers",
-        {"name": "Units", "type": "u8", "resolution": 2048, "palette": classes, "opacity": 0.5},
-    )
+    make_colored_layers(server, M)
     server.ok(
         "POST",
         "/projects/default/tables",
@@ -72,9 +53,6 @@ def make_layers(server):
             "resolution": 2048,
         },
     )
-    dab(server, f"{M}/layers/wet", 7.5, 40, 40, 30)
-    dab(server, f"{M}/layers/units", 1, 60, 40, 25)
-    dab(server, f"{M}/layers/units", 2, 40, 70, 25)
     # more records than one channel of a picture can distinguish
     rows = [f"{x * 5.5 + 3},{y * 5.5 + 3},0,{1 + y * 17 + x}" for y in range(17) for x in range(17)]
     server.ok(

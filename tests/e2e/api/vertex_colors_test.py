@@ -3,6 +3,7 @@ position."""
 
 import pytest
 from support.cameras import camera_from
+from support.colored_layers import make_colored_layers
 from support.meshes import folded_grid
 from support.pictures import pixels, png
 from support.ply import read_ply
@@ -52,24 +53,7 @@ def check_as_seen(server, query, at_least, kinds, **frame):
 
 
 def make_layers(server):
-    ramp = {
-        "mode": "linear",
-        "min": 0,
-        "max": 10,
-        "points": [{"at": 0, "color": "#000000"}, {"at": 10, "color": "#ffcc00"}],
-    }
-    server.ok(
-        "POST", M + "/layers", {"name": "Wet", "type": "f32", "resolution": 2048, "palette": ramp}
-    )
-    classes = {
-        "mode": "categorical",
-        "points": [{"at": 1, "color": "#ff0000"}, {"at": 2, "color": "#0000ff80"}],
-    }
-    server.ok(
-        "POST",
-        M + "/layers",
-        {"name": "Units", "type": "u8", "resolution": 2048, "palette": classes, "opacity": 0.5},
-    )
+    make_colored_layers(server, M)
     server.ok(
         "POST",
         "/projects/default/tables",
@@ -95,9 +79,6 @@ def make_layers(server):
             "palette": by_state,
         },
     )
-    dab(server, f"{M}/layers/wet", 7.5, 40, 40, 30)
-    dab(server, f"{M}/layers/units", 1, 60, 40, 25)
-    dab(server, f"{M}/layers/units", 2, 40, 70, 25)
     dab(server, f"{M}/layers/pieces", 1, 20, 20, 12)
     dab(server, f"{M}/layers/pieces", 2, 60, 60, 12)
 

@@ -5,6 +5,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { attach_log, ends_well, test } from "../support/js/cases.mjs";
+import { with_samples } from "../support/js/marks.mjs";
 import { open_tab } from "../support/js/panel.mjs";
 import { wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
@@ -75,26 +76,11 @@ const as_file = (name, text, mimeType = "text/plain") => ({
   buffer: Buffer.from(text),
 });
 
-let browser, page, server, front, middle;
+let browser, page, server, front, marks, middle;
 
 test.beforeAll(async ({ server: started, desk }) => {
   [browser, page, server] = [desk, desk.page, started];
-  const { project } = await server.json("GET", base);
-  await server.json("POST", `/projects/${project}/tables`, {
-    name: "Samples",
-    columns: [
-      { name: "Cracks", kind: "line" },
-      { name: "Places", kind: "point" },
-    ],
-  });
-  await server.json("POST", "/tables/samples/records", { values: {} });
-  await server.json("POST", `${base}/layers`, {
-    name: "Samples",
-    kind: "database",
-    table: "samples",
-    type: "u16",
-    resolution: 2048,
-  });
+  marks = await with_samples(server, base);
   const palette = { mode: "categorical", points: [{ at: 1, color: "#ff00ffff", label: "Test" }] };
   await server.json("POST", `${base}/layers`, {
     name: "Test",
@@ -243,8 +229,6 @@ test("a line and a point belong to the record, where the photograph shows them",
     await page.mouse.click(x + across * width, y + down * height);
   };
   const tool = (name) => dialog().getByRole("radio", { name, exact: true }).click();
-  const marks = async (column) =>
-    (await server.json("GET", "/tables/samples/records/1")).values[column] ?? [];
   const seen_at = (place) => {
     const { view, projection } = camera_of(front, middle);
     const times = (matrix, vector) =>

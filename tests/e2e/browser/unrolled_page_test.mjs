@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
+import { with_samples } from "../support/js/marks.mjs";
 import { open_tab } from "../support/js/panel.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
 import { texts_of } from "../support/js/texts.mjs";
@@ -146,22 +147,7 @@ test("a stroke is one edit with the width on the object, and can be undone", asy
 });
 
 test("a line and a point belong to a record, and are on the surface", async () => {
-  const { project } = await server.json("GET", base);
-  const columns = [
-    { name: "Cracks", kind: "line" },
-    { name: "Places", kind: "point" },
-  ];
-  await server.json("POST", `/projects/${project}/tables`, { name: "Samples", columns });
-  await server.json("POST", "/tables/samples/records", { values: {} });
-  await server.json("POST", `${base}/layers`, {
-    name: "Samples",
-    kind: "database",
-    table: "samples",
-    type: "u16",
-    resolution: 2048,
-  });
-  const marks = async (column) =>
-    (await server.json("GET", "/tables/samples/records/1")).values[column] ?? [];
+  const marks = await with_samples(server, base);
   await dialog(ada).locator('select[name="layer"]').selectOption("Samples");
   await radio(ada, words.tools.line).click();
   await drag(ada, [0.4, 0.5], [0.5, 0.55]);
