@@ -23,9 +23,10 @@ constexpr auto kPhotographs = sql(
     "p.calibration, p.pose, p.version, p.media_type, b.bytes, encode(p.sha256, 'hex'), p.width, "
     "p.height FROM photographs p LEFT JOIN blobs b USING (sha256) ");
 
-// Of a model, whose names contain a text, with an image ($3) or without one ($4).
+// Of a model, whose names contain a text, with an image ($3) or without one ($4). The names sort by
+// their bytes (collation "C"), where lower() would only know the letters of ASCII.
 constexpr auto kChosen =
-    sql("WHERE p.model_id = $1 AND position(lower($2) IN lower(p.name)) > 0 "
+    sql("WHERE p.model_id = $1 AND position(lower($2) IN lower(p.name COLLATE \"default\")) > 0 "
         "AND CASE WHEN p.sha256 IS NULL THEN $4 ELSE $3 END ");
 
 photo::Calibration read_calibration(PgRow& row) {
