@@ -1,5 +1,6 @@
 #include "net/api/problems_page.h"
 
+#include "core/text/markup.h"
 #include "protocol/problem.h"
 
 namespace strata::net {
@@ -14,21 +15,6 @@ constexpr std::string_view kBegin =
 
 }  // namespace
 
-std::string html_escape(std::string_view text) {
-  std::string out;
-  for (char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
-
 std::string problems_html() {
   std::string page = std::string(kBegin) +
                      "<h1>Problems of the Strata API</h1><p>Every error is an "
@@ -42,7 +28,7 @@ std::string problems_html() {
     const std::string code(name(kind.code));
     page += "<tr id=\"" + code + "\"><td><code>" + protocol::problem_type(kind.code) +
             "</code></td><td>" + std::to_string(kind.status) + "</td><td>" +
-            html_escape(kind.meaning) + "</td><td>" + html_escape(kind.remedy) + "</td></tr>";
+            escaped_markup(kind.meaning) + "</td><td>" + escaped_markup(kind.remedy) + "</td></tr>";
   }
   return page + "</tbody></table></main></body></html>";
 }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/byte_budget.h"
+#include "core/text/markup.h"
 #include "core/uuid.h"
 #include "net/api/node_redirect.h"
 #include "net/api/problems_page.h"
@@ -542,7 +543,7 @@ TEST(ByteBudget, what_is_held_bounds_what_may_be_taken) {
 // --- Pages and figures
 
 TEST(Problems, text_cannot_become_markup) {
-  EXPECT_EQ(html_escape("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");
+  EXPECT_EQ(escaped_markup("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");
 }
 
 TEST(Problems, all_of_it_is_the_main_part_and_every_column_has_a_head) {
