@@ -11,14 +11,14 @@ void Router::add(Route route) {
     const std::size_t end = std::min(pattern.find('/', begin), pattern.size());
     const std::string text = pattern.substr(begin, end - begin);
     Segment segment;
-    const auto open = text.find('{');
-    if (open == std::string::npos) {
-      segment.prefix = text;
-    } else {
+    auto open = text.find('{');
+    segment.before = text.substr(0, open);
+    while (open != std::string::npos) {
       const auto close = text.find('}', open);
-      segment.prefix = text.substr(0, open);
-      segment.param = text.substr(open + 1, close - open - 1);
-      segment.suffix = text.substr(close + 1);
+      const auto next = text.find('{', close);
+      segment.params.push_back(
+          {text.substr(open + 1, close - open - 1), text.substr(close + 1, next - close - 1)});
+      open = next;
     }
     entry.segments.push_back(std::move(segment));
     begin = end + 1;
@@ -30,17 +30,24 @@ void Router::add(Route route) {
 bool Router::matches(const Entry& entry, const std::vector<std::string>& segments,
                      std::map<std::string, std::string>& params) {
   if (entry.segments.size() != segments.size()) return false;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    const Segment& segment = entry.segments[i];
-    const std::string& text = segments[i];
-    if (segment.param.empty()) {
-      if (text != segment.prefix) return false;
-      continue;
-    }
-    if (text.size() <= segment.prefix.size() + segment.suffix.size()) return false;
-    if (!text.starts_with(segment.prefix) || !text.ends_with(segment.suffix)) return false;
-    params[segment.param] = text.substr(
-        segment.prefix.size(), text.size() - segment.prefix.size() - segment.suffix.size());
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    if (!entry.segments[i].matches(segments[i], params)) return false;
+  return true;
+}
+
+bool Router::Segment::matches(const std::string& text,
+                              std::map<std::string, std::string>& values) const {
+  if (params.empty()) return text == before;
+  if (!text.starts_with(before)) return false;
+  std::size_t begin = before.size();
+  for (const Param& param : params) {
+    const bool is_last = &param == &params.back();
+    if (is_last && !text.ends_with(param.after)) return false;
+    const std::size_t end =
+        is_last ? text.size() - param.after.size() : text.find(param.after, begin + 1);
+    if (end == std::string::npos || end <= begin) return false;
+    values[param.name] = text.substr(begin, end - begin);
+    begin = end + param.after.size();
   }
   return true;
 }

@@ -19,7 +19,8 @@ enum class BodyKind { none, memory, file };
 
 struct Route {
   Method method = Method::get;
-  std::string pattern;  // "/api/v1/models/{model}/texels.{format}": one {name} per segment
+  // "/api/v1/models/{model}/texels.{format}". Two {names} in a segment are separated by text.
+  std::string pattern;
   Handler handler;
   // Lowest role that may call the route, in the addressed project or on the site. Empty for public
   // routes.
@@ -66,8 +67,14 @@ class Router {
   Match find(Method method, const std::vector<std::string>& segments) const;
 
  private:
+  // A parameter ends where the first text after it begins, and the last one at the end.
   struct Segment {
-    std::string prefix, param, suffix;  // without a parameter, `prefix` is the whole segment
+    struct Param {
+      std::string name, after;  // the text after it
+    };
+    std::string before;  // without parameters, the whole segment
+    std::vector<Param> params;
+    bool matches(const std::string& text, std::map<std::string, std::string>& values) const;
   };
   struct Entry {
     Route route;

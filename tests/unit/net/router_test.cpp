@@ -43,6 +43,25 @@ TEST(Router, a_caught_part_is_never_empty) {
   EXPECT_EQ(router.find(Method::remove, segments("/api/v1/jobs/")).route, nullptr);
 }
 
+TEST(Router, a_segment_can_have_several_parts) {
+  Router router;
+  auto nothing = [](const Request&, const Respond&) {};
+  for (const char* id : {"{model}.{layer}.{column}", "{model}.{layer}", "{model}"})
+    router.add({.method = Method::get, .pattern = std::string("/ogc/") + id, .handler = nothing});
+  using Params = std::map<std::string, std::string>;
+  const auto params = [&](const char* path) {
+    return router.find(Method::get, segments(path)).params;
+  };
+  EXPECT_EQ(params("/ogc/wall"), (Params{{"model", "wall"}}));
+  EXPECT_EQ(params("/ogc/wall.salts"), (Params{{"model", "wall"}, {"layer", "salts"}}));
+  EXPECT_EQ(params("/ogc/wall.salts.a"),
+            (Params{{"model", "wall"}, {"layer", "salts"}, {"column", "a"}}));
+  EXPECT_EQ(params("/ogc/wall.salts.a.b").at("column"), "a.b");
+  // Empty parts are not parts, so a shorter pattern finds these.
+  EXPECT_EQ(params("/ogc/wall."), (Params{{"model", "wall."}}));
+  EXPECT_EQ(params("/ogc/.salts"), (Params{{"model", ".salts"}}));
+}
+
 TEST(Router, head_finds_what_get_finds) {
   const Router router = make_router();
   EXPECT_NE(router.find(Method::head, segments("/api/v1/models")).route, nullptr);
