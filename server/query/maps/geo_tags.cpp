@@ -1,17 +1,22 @@
 #include "query/maps/geo_tags.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace strata::query {
 namespace {
 
 constexpr std::uint32_t kPixelScale = 33550, kTiepoint = 33922, kTransformation = 34264,
-                        kGeoKeys = 34735, kNodata = 42113;
-constexpr std::uint16_t kModelType = 1024, kRasterType = 1025, kProjected = 3072;
-constexpr std::uint16_t kGeographic = 2, kPixelIsPoint = 2;
+                        kGeoKeys = 34735, kGeoTexts = 34737, kGdalMetadata = 42112, kNodata = 42113;
+constexpr std::uint16_t kModelType = 1024, kRasterType = 1025, kCitation = 1026, kProjected = 3072,
+                        kLengthUnit = 3076;
+constexpr std::uint16_t kProjectedModel = 1, kGeographic = 2, kPixelIsArea = 1, kPixelIsPoint = 2,
+                        kMeter = 9001;
 constexpr std::uint16_t kUserDefined = 32767;
 
 // libtiff reads unknown tags as lists of the type given in the file.
@@ -74,6 +79,49 @@ void set_nodata(TIFF* tiff, const char* number) {
   static const TIFFFieldInfo field{kNodata, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name};
   TIFFMergeFieldInfo(tiff, &field, 1);
   TIFFSetField(tiff, kNodata, number);
+}
+
+void set_gdal_metadata(TIFF* tiff, const std::string& xml) {
+  static char name[] = "GDALMetadata";
+  static const TIFFFieldInfo field{kGdalMetadata, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name};
+  TIFFMergeFieldInfo(tiff, &field, 1);
+  TIFFSetField(tiff, kGdalMetadata, xml.c_str());
+}
+
+void set_geo_tags(TIFF* tiff, const glm::dvec2& top_left, const glm::dvec2& cell, int epsg,
+                  const std::string& plane) {
+  static char scale_name[] = "ModelPixelScale", tie_name[] = "ModelTiepoint",
+              keys_name[] = "GeoKeyDirectory", texts_name[] = "GeoAsciiParams";
+  static const TIFFFieldInfo fields[] = {
+      {kPixelScale, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, scale_name},
+      {kTiepoint, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, tie_name},
+      {kGeoKeys, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, keys_name},
+      {kGeoTexts, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, texts_name}};
+  TIFFMergeFieldInfo(tiff, fields, std::size(fields));
+  const double scale[] = {cell.x, cell.y, 0}, tie[] = {0, 0, 0, top_left.x, top_left.y, 0};
+  TIFFSetField(tiff, kPixelScale, 3, scale);
+  TIFFSetField(tiff, kTiepoint, 6, tie);
+  // Each entry of the directory: key, tag of the value (0: the value is here), count, value.
+  std::vector<std::uint16_t> keys{1, 1, 1, 0};
+  const auto add = [&](std::uint16_t key, std::uint16_t tag, std::uint16_t count,
+                       std::uint16_t value) {
+    keys.insert(keys.end(), {key, tag, count, value});
+    ++keys[3];
+  };
+  const bool is_projected = epsg > 0 && epsg < kUserDefined;
+  add(kModelType, 0, 1, is_projected ? kProjectedModel : kUserDefined);
+  add(kRasterType, 0, 1, kPixelIsArea);
+  if (is_projected) {
+    add(kProjected, 0, 1, static_cast<std::uint16_t>(epsg));
+  } else {
+    std::string citation = epsg > 0 ? "EPSG:" + std::to_string(epsg) : plane;
+    std::ranges::replace(citation, '|', '/');  // `|` ends a text
+    citation += '|';
+    add(kCitation, kGeoTexts, static_cast<std::uint16_t>(citation.size()), 0);
+    TIFFSetField(tiff, kGeoTexts, citation.c_str());
+  }
+  add(kLengthUnit, 0, 1, kMeter);
+  TIFFSetField(tiff, kGeoKeys, static_cast<int>(keys.size()), keys.data());
 }
 
 Result<void> read_geo_tags(TIFF* tiff, MapTiff& info) {
