@@ -23,6 +23,7 @@ struct FeatureField {
 enum class FeatureKind { areas, lines, points };
 
 struct Feature {
+  std::string id;                    // unique in its table, and the same until the record changes
   std::vector<FeatureValue> values;  // one value per field
   // An area consists of any number of polygons. A line is one polygon with one open ring. A point
   // is one polygon with one ring that consists of one point.

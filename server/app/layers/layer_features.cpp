@@ -1,14 +1,15 @@
 #include "app/layers/layer_features.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 
 #include "app/figures/class_names.h"
+#include "app/maps/map_place.h"
 #include "app/records/record_csv.h"
 #include "domain/tables/column_value.h"
 #include "domain/tables/surface_feature.h"
+#include "query/maps/map_features.h"
 #include "room/surface.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
@@ -159,6 +160,8 @@ LayerClasses classes_in(const FeatureRequest& request, room::LayerAreas areas,
     const std::uint32_t a_class = class_of(quantity, layer, classes);
     of_features.push_back(a_class);
     const std::int64_t key = has_keys ? static_cast<std::int64_t>(*quantity.value) : 0;
+    feature.id = quantity.value ? query::number_text(*quantity.value)
+                                : "range-" + std::to_string(a_class + 1);
     if (has_keys)
       feature.values = {key};
     else if (classes.each)
@@ -193,10 +196,13 @@ FeatureTable features_in(const FeatureRequest& request, const Records& records,
                      (are_lines ? "lines_" : "points_") + drawn.slug,
                      fields.take(),
                      {}};
-  for (const auto& [key, record] : records.by_key)
+  for (const auto& [key, record] : records.by_key) {
+    int number = 0;  // of the mark in the record
     for (const SurfaceFeature& surface_feature : features_of(record, drawn)) {
+      ++number;
       if (surface_feature.model != model.id) continue;
       Feature& feature = table.features.emplace_back();
+      feature.id = std::to_string(key) + "-" + std::to_string(number);
       const auto name = records.names.find(key);
       feature.values = {
           key, text_or_nothing(name == records.names.end() ? std::string() : name->second)};
@@ -210,18 +216,8 @@ FeatureTable features_in(const FeatureRequest& request, const Records& records,
                           place[request.plane.depth]);
       feature.geometry = {{{std::move(path)}}};
     }
+  }
   return table;
-}
-
-// Returns the code of the model's coordinate system if the unit is the meter and the plane is seen
-// along z, as on a map. Otherwise returns 0.
-int epsg_of(const Model& model, const query::OutlinePlane& plane) {
-  constexpr std::string_view kAuthority = "EPSG:";
-  int code = 0;
-  if (plane.depth == 2 && model.unit == Unit::m && model.crs.starts_with(kAuthority))
-    std::from_chars(model.crs.data() + kAuthority.size(), model.crs.data() + model.crs.size(),
-                    code);
-  return code;
 }
 
 // The classes of a layer with the records of its table.
@@ -231,6 +227,11 @@ struct Described {
 };
 
 Result<Described> describe(store::Store& store, FeatureRequest request) {
+  if (!request.with_areas) {
+    Described marks;
+    if (request.layer.table) marks.records = STRATA_TRY(read_records(store, request, {}));
+    return marks;
+  }
   auto areas =
       STRATA_TRY(request.room->queries().layer_areas(to_string(request.layer.id), request.at));
   // Its palette and slug may have changed since the request.
@@ -257,23 +258,26 @@ Result<LayerClasses> layer_classes(store::Store& store, const FeatureRequest& re
 Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& request) {
   const Model model = request.room->model();
   auto [classes, records] = STRATA_TRY(describe(store, request));
-  auto outlines = query::plane_outlines(classes.areas.view, *request.room->surface().geometry(),
-                                        *classes.areas.map,
-                                        query::classes_of(classes.areas.view.layer), request.plane);
-  if (!outlines) return tl::unexpected(outlines.error());
-  for (std::size_t i = 0; i < classes.classes.size(); ++i)
-    if (const auto outline = outlines->find(classes.classes[i]); outline != outlines->end())
-      classes.table.features[i].geometry = std::move(outline->second);
   FeatureSet set;
   set.name = model.slug + "-" + request.layer.slug;
   set.unit = name(model.unit);
   for (const int axis : {request.plane.right, request.plane.up, request.plane.depth})
     set.axes += "xyz"[axis];
-  set.epsg = epsg_of(model, request.plane);
+  set.epsg = epsg_of(model, request.plane.depth);
   set.description = request.layer.name + " on " + model.name + ": " + set.axes + " in " + set.unit;
-  set.tables.push_back(std::move(classes.table));
-  for (const Column& column : records.surface_features)
-    set.tables.push_back(features_in(request, records, column));
+  if (request.with_areas) {
+    auto outlines = query::plane_outlines(
+        classes.areas.view, *request.room->surface().geometry(), *classes.areas.map,
+        query::classes_of(classes.areas.view.layer), request.plane);
+    if (!outlines) return tl::unexpected(outlines.error());
+    for (std::size_t i = 0; i < classes.classes.size(); ++i)
+      if (const auto outline = outlines->find(classes.classes[i]); outline != outlines->end())
+        classes.table.features[i].geometry = std::move(outline->second);
+    set.tables.push_back(std::move(classes.table));
+  }
+  if (request.with_marks)
+    for (const Column& column : records.surface_features)
+      set.tables.push_back(features_in(request, records, column));
   return set;
 }
 

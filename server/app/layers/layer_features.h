@@ -18,6 +18,8 @@ struct FeatureRequest {
   query::OutlinePlane plane;
   Role role = Role::viewer;
   std::string language;  // for the labels of terms
+  // The tables to return: the areas, and the lines and points of records.
+  bool with_areas = true, with_marks = true;
 };
 
 // Returns the areas of a layer's classes. For a database layer, also returns the lines and points

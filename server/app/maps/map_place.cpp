@@ -1,6 +1,7 @@
 #include "app/maps/map_place.h"
 
 #include <array>
+#include <charconv>
 
 #include "domain/layers/value_type.h"
 #include "query/maps/map_features.h"
@@ -17,6 +18,15 @@ Result<MapAxis> parse_map_axis(std::string_view text) {
   MapAxis made{glm::dvec3(0), axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
   made.direction[axis] = text[0] == '-' ? -1 : 1;
   return made;
+}
+
+int epsg_of(const Model& model, int depth) {
+  constexpr std::string_view kAuthority = "EPSG:";
+  int code = 0;
+  if (depth == 2 && model.unit == Unit::m && model.crs.starts_with(kAuthority))
+    std::from_chars(model.crs.data() + kAuthority.size(), model.crs.data() + model.crs.size(),
+                    code);
+  return code;
 }
 
 Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& files,

@@ -41,6 +41,10 @@ struct MapAxis {
 // Parses an axis with its sign. Refuses (invalid, `along`) other text.
 Result<MapAxis> parse_map_axis(std::string_view text);
 
+// Returns the code of the model's coordinate system if the unit is the meter and the model is seen
+// along z (`depth` is 2), as on a map. Otherwise returns 0.
+int epsg_of(const Model& model, int depth);
+
 // Returns the position of the map from the options, from a world file, or from the tags in the
 // image, in this order. Refuses (invalid) a map without any of these.
 Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& files,

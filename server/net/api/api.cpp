@@ -192,6 +192,10 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_map_routes(router_, context_);
   add_orthophoto_routes(router_, context_);
   add_photograph_routes(router_, context_);
+  add_ogc_routes(router_, context_);
+  add_ogc_item_routes(router_, context_);
+  add_ogc_coverage_routes(router_, context_);
+  add_ogc_query_routes(router_, context_);
   page_.pattern = "/";
   page_.role = std::nullopt;
   page_.any_query = true;

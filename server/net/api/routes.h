@@ -60,5 +60,9 @@ void add_shape_routes(Router& router, const RouteContext& context);
 void add_map_routes(Router& router, const RouteContext& context);
 void add_photograph_routes(Router& router, const RouteContext& context);
 void add_orthophoto_routes(Router& router, const RouteContext& context);
+void add_ogc_routes(Router& router, const RouteContext& context);
+void add_ogc_item_routes(Router& router, const RouteContext& context);
+void add_ogc_coverage_routes(Router& router, const RouteContext& context);
+void add_ogc_query_routes(Router& router, const RouteContext& context);
 
 }  // namespace strata::net

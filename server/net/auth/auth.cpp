@@ -2,6 +2,7 @@
 
 #include "core/digest.h"
 #include "core/secret.h"
+#include "core/text/base64.h"
 #include "net/http/origin.h"
 #include "store/people/accounts.h"
 #include "store/people/kiosks.h"
@@ -14,7 +15,7 @@ namespace {
 constexpr std::chrono::seconds kRememberFor{10};
 constexpr std::size_t kMaxRemembered = 4096;
 constexpr std::size_t kMaxTokenLength = 512;
-constexpr std::string_view kScheme = "bearer ";
+constexpr std::string_view kScheme = "bearer ", kBasic = "basic ";
 
 tl::unexpected<Error> unknown_secret() {
   return fail(ErrorCode::unauthenticated, "Not signed in",
@@ -37,6 +38,23 @@ std::string cookie_of(std::string_view name, const std::string& value,
   return std::string(secure ? kHostPrefix : "") + std::string(name) + "=" + value +
          "; Path=/; HttpOnly; SameSite=" + std::string(same_site) +
          "; Max-Age=" + std::to_string(lifetime.count()) + (secure ? "; Secure" : "");
+}
+
+// Many GIS programs can only send a user name and a password (RFC 7617). The token is then the
+// password. A browser may repeat such a header without being asked, so only reads accept it.
+bool accepts_basic(const Request& request) {
+  return (request.method == Method::get || request.method == Method::head) &&
+         !request.segments.empty() && request.segments.front() == "ogc";
+}
+
+// Returns the password of a header, and an empty text if the header has another form.
+std::string basic_password(std::string_view authorization) {
+  if (to_lower(authorization.substr(0, kBasic.size())) != kBasic) return {};
+  const auto bytes = from_base64(authorization.substr(kBasic.size()));
+  if (!bytes) return {};
+  const std::string text(bytes->begin(), bytes->end());
+  const auto colon = text.find(':');
+  return colon == std::string::npos ? std::string() : text.substr(colon + 1);
 }
 
 }  // namespace
@@ -115,9 +133,9 @@ std::string Authenticator::secret_of(const Request& request) {
       secret = cookie_value(request.header("cookie"), cookie);
     return secret;
   }
-  return to_lower(authorization.substr(0, kScheme.size())) == kScheme
-             ? authorization.substr(kScheme.size())
-             : std::string();
+  if (to_lower(authorization.substr(0, kScheme.size())) == kScheme)
+    return authorization.substr(kScheme.size());
+  return accepts_basic(request) ? basic_password(authorization) : std::string();
 }
 
 Result<std::optional<Principal>> Authenticator::identify(const Request& request) {
@@ -125,8 +143,11 @@ Result<std::optional<Principal>> Authenticator::identify(const Request& request)
   const std::string secret = secret_of(request);
   if (secret.empty() && by_cookie) return std::nullopt;
   if (secret.empty())
-    return fail(ErrorCode::unauthenticated, "Not signed in",
-                "The Authorization header must have the form `Bearer TOKEN`.", "Authorization");
+    return fail(
+        ErrorCode::unauthenticated, "Not signed in",
+        "The Authorization header must have the form `Bearer TOKEN`. Under /ogc, it can also "
+        "contain the token as a password (`Basic`).",
+        "Authorization");
   auto principal = STRATA_TRY(identify_token(secret));
   if (!principal) return unknown_secret();
   // Each cookie is valid only for its own purpose. A script that sets cookies cannot turn a user's

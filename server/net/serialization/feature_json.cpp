@@ -10,45 +10,45 @@ namespace strata::net {
 namespace {
 
 constexpr std::size_t kPieceBytes = 1u << 16;
-constexpr int kDecimals = 6;  // a micrometer if the model is in meters
 
-void append_number(std::string& text, double value) {
+void append_number(std::string& text, double value, int decimals) {
   char digits[400];  // the largest double has 309 digits before the decimal point
   char* end =
-      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, kDecimals).ptr;
+      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals).ptr;
   while (end[-1] == '0') --end;
   if (end[-1] == '.') --end;
   const std::string_view number(digits, static_cast<std::size_t>(end - digits));
   text += number == "-0" ? "0" : number;
 }
 
-void append_place(std::string& text, const glm::dvec3& place) {
-  for (int axis = 0; axis < 3; ++axis) {
+void append_place(std::string& text, const glm::dvec3& place, const CoordinateForm& form) {
+  for (int axis = 0; axis < form.dimensions; ++axis) {
     text += axis == 0 ? '[' : ',';
-    append_number(text, place[axis]);
+    append_number(text, place[axis], form.decimals);
   }
   text += ']';
 }
 
-void append_path(std::string& text, const query::FlatRing& ring, bool closed) {
+void append_path(std::string& text, const query::FlatRing& ring, bool closed,
+                 const CoordinateForm& form) {
   for (std::size_t i = 0; i < ring.size() + (closed ? 1 : 0); ++i) {
     text += i == 0 ? '[' : ',';
-    append_place(text, ring[i % ring.size()]);
+    append_place(text, ring[i % ring.size()], form);
   }
   text += ']';
 }
 
 void append_geometry(std::string& text, app::FeatureKind kind,
-                     const std::vector<query::FlatPolygon>& geometry) {
+                     const std::vector<query::FlatPolygon>& geometry, const CoordinateForm& form) {
   if (geometry.empty()) return void(text += "null");
   if (kind != app::FeatureKind::areas) {
     const query::FlatRing& path = geometry.front().rings.front();
     text += kind == app::FeatureKind::points ? R"({"type":"Point","coordinates":)"
                                              : R"({"type":"LineString","coordinates":)";
     if (kind == app::FeatureKind::points)
-      append_place(text, path.front());
+      append_place(text, path.front(), form);
     else
-      append_path(text, path, false);
+      append_path(text, path, false, form);
     return void(text += '}');
   }
   text += R"({"type":"MultiPolygon","coordinates":[)";
@@ -56,7 +56,7 @@ void append_geometry(std::string& text, app::FeatureKind kind,
     if (&polygon != &geometry.front()) text += ',';
     for (const query::FlatRing& ring : polygon.rings) {
       text += &ring == &polygon.rings.front() ? '[' : ',';
-      append_path(text, ring, true);
+      append_path(text, ring, true, form);
     }
     text += ']';
   }
@@ -86,19 +86,6 @@ std::string head(const app::FeatureSet& set) {
   return text + R"("features":[)";
 }
 
-void append_feature(std::string& text, const app::FeatureTable& table,
-                    const app::Feature& feature) {
-  nlohmann::json properties = nlohmann::json::object();
-  properties["kind"] = table.name;
-  for (std::size_t i = 0; i < table.fields.size(); ++i)
-    properties[table.fields[i].name] = json_of(feature.values[i]);
-  text += R"({"type":"Feature","properties":)";
-  text += properties.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  text += R"(,"geometry":)";
-  append_geometry(text, table.kind, feature.geometry);
-  text += '}';
-}
-
 bool write(const app::FeatureSet& set, const Response::Sink& sink) {
   std::string text = head(set);
   bool is_first = true;
@@ -107,7 +94,7 @@ bool write(const app::FeatureSet& set, const Response::Sink& sink) {
       check_question();
       text += is_first ? "\n" : ",\n";
       is_first = false;
-      append_feature(text, table, feature);
+      append_feature(text, table, feature, {});
       if (text.size() < kPieceBytes) continue;
       if (!sink(bytes_of(text))) return false;
       text.clear();
@@ -117,6 +104,21 @@ bool write(const app::FeatureSet& set, const Response::Sink& sink) {
 }
 
 }  // namespace
+
+void append_feature(std::string& text, const app::FeatureTable& table, const app::Feature& feature,
+                    const CoordinateForm& form, std::string_view members) {
+  nlohmann::json properties = nlohmann::json::object();
+  properties["kind"] = table.name;
+  for (std::size_t i = 0; i < table.fields.size(); ++i)
+    properties[table.fields[i].name] = json_of(feature.values[i]);
+  text += R"({"type":"Feature",)";
+  text += members;
+  text += R"("properties":)";
+  text += properties.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  text += R"(,"geometry":)";
+  append_geometry(text, table.kind, feature.geometry, form);
+  text += '}';
+}
 
 Response feature_json(app::FeatureSet set) {
   const auto held = std::make_shared<const app::FeatureSet>(std::move(set));

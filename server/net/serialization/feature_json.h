@@ -13,4 +13,13 @@ inline constexpr const char* kGeoJsonType = "application/geo+json";
 // geometry.
 Response feature_json(app::FeatureSet set);
 
+// The form of coordinates in GeoJSON.
+struct CoordinateForm {
+  int dimensions = 3;
+  int decimals = 6;  // a micrometer if the coordinates are in meters
+};
+// Appends a feature as GeoJSON. `members` is inserted after its type, for example `"id":"3",`.
+void append_feature(std::string& text, const app::FeatureTable& table, const app::Feature& feature,
+                    const CoordinateForm& form, std::string_view members = {});
+
 }  // namespace strata::net

@@ -12,6 +12,11 @@ FORBIDDEN_OF_ANY_CALL = (b"Not allowed for kiosks", b'"field":"Origin"')
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
 
 
+def address_of(path):
+    """Returns a path of the contract as `StrataServer.request` takes it."""
+    return path.removeprefix("/api/v1") if path.startswith("/api/v1/") else "/" + path
+
+
 def _is_type(value, name):
     if name in ("number", "integer"):
         return not isinstance(value, bool) and (

@@ -4,10 +4,20 @@ import re
 import urllib.parse
 
 from support.browsers import Browser, join
+from support.contract import address_of
 from support.live_client import LiveClient, Refused
 from support.meshes import folded_grid
 
-IN_PROJECTS = ("project", "model", "table", "attachment", "comment", "job", "kiosk")
+IN_PROJECTS = (
+    "project",
+    "model",
+    "collection",
+    "table",
+    "attachment",
+    "comment",
+    "job",
+    "kiosk",
+)
 OF_THE_SITE = ("user", "group", "session", "token", "tool", "provider")
 
 
@@ -92,6 +102,7 @@ def make_sites(server):
             "kiosk": {"id": kiosk["id"]},
             "project": project,
             "model": model,
+            "collection": model,
             "table": table,
             "attachment": attachment,
             "job": {"id": job},
@@ -118,7 +129,7 @@ def doors(server, site):
             if ref not in site[place]:
                 continue
             there, ghost = str(site[place][ref]), "987654321" if ref == "id" else "ghost"
-            address = re.sub(r"\{(?!" + place + r"\})\w+\}", "1", path.removeprefix("/api/v1"))
+            address = re.sub(r"\{(?!" + place + r"\})\w+\}", "1", address_of(path))
             for method in operations:
                 if method in ("get", "post", "put", "patch", "delete"):
                     yield method.upper(), address.replace(

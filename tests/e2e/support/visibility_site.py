@@ -8,6 +8,7 @@ import zipfile
 
 from support.addresses import query
 from support.cameras import camera_from
+from support.contract import address_of
 from support.meshes import folded_grid
 from support.pictures import png
 
@@ -171,6 +172,9 @@ def words(server, public):
         "snapshot": ["first"],
         "selection": ["sunny"],
         "photograph": ["1"],
+        "collection": ["sheet", "sheet.cracks", "sheet.finds", "sheet.finds.name"],
+        "feature": ["1"],
+        "plane": ["xy"],
         "file": ["1"],
         "kiosk": ["1"],
         "name": ["sheet.ply"],
@@ -208,6 +212,11 @@ def queries(server, path, operation):
     parameters = [each for each in parameters if each["in"] == "query"]
     given = {
         "coords": ["POINT Z(50 50 0)"],
+        "datetime": ["2030-01-01T00:00:00Z", "2030-01-01T00:00:00Z/.."],
+        "bbox": ["0,0,0.1,0.1"],
+        "subset": ["x(0:0.1)"],
+        "scale-size": ["x(50),y(50)"],
+        "width": ["20"],
         "filter": ["depth > 0"],
         "sortby": ["name", "-depth"],
         "at": ["1", "2"],
@@ -221,6 +230,10 @@ def queries(server, path, operation):
         "parameter-name": ["cracks,finds"],
         "project": ["default"],
     }
+    given["coords"] = {
+        "get_ogc_trajectory": ["LINESTRING(0.01 0.01, 0.09 0.09)"],
+        "get_ogc_area": ["POLYGON((0.01 0.01, 0.09 0.01, 0.09 0.09, 0.01 0.01))"],
+    }.get(operation["operationId"], given["coords"])
     values = {
         each["name"]: given.get(each["name"])
         or [str(value) for value in server.contract._resolve(each["schema"]).get("enum", [])]
@@ -284,9 +297,11 @@ def reading_bodies(camera):
     }
 
 
-def accepted_types(server, operation):
-    """Yields JSON, and CSV if the contract offers it."""
+def accepted_types(server, path, operation):
+    """Yields JSON, CSV if the contract offers it, and any type for GIS programs."""
     yield "application/json"
+    if path.startswith("/ogc"):
+        yield "*/*"
     offered = (
         server.contract._resolve(response).get("content", {})
         for status, response in operation["responses"].items()
@@ -302,7 +317,7 @@ def sweep(server, token, words_of, camera):
     bodies, answered, told = reading_bodies(camera), 0, {}
     for path, operations in server.contract.document["paths"].items():
         # these responses have no end; events_test.py reads them
-        if not path.startswith("/api/v1") or path.endswith(("/live", "/events")):
+        if not path.startswith(("/api/v1", "/ogc")) or path.endswith(("/live", "/events")):
             continue
         for method, operation in operations.items():
             asked = (
@@ -312,10 +327,10 @@ def sweep(server, token, words_of, camera):
                 if method == "get"
                 else None
             )
-            for filled in fillings(path.removeprefix("/api/v1"), words_of) if asked else []:
+            for filled in fillings(address_of(path), words_of) if asked else []:
                 for parameters in queries(server, path, operation):
                     for body in asked:
-                        for accept in accepted_types(server, operation):
+                        for accept in accepted_types(server, path, operation):
                             answer = server.request(
                                 method.upper(),
                                 query(filled, **parameters),
@@ -363,16 +378,19 @@ def doors_closed(server, token, words_of, hidden, thread):
     """Returns every address of a secret, and the addresses that also contain one."""
     count = 0
     for path, operations in server.contract.document["paths"].items():
-        for name, secret, ghost in (
-            ("layer", LAYER, GHOSTS[LAYER]),
-            ("layer", KEYS, GHOSTS[KEYS]),
-            ("column", COLUMN, GHOSTS[COLUMN]),
-            ("attachment", str(hidden["id"]), "987654"),
-            ("comment", str(thread), "987654"),
+        for name, before, secret, ghost in (
+            ("layer", "", LAYER, GHOSTS[LAYER]),
+            ("layer", "", KEYS, GHOSTS[KEYS]),
+            ("column", "", COLUMN, GHOSTS[COLUMN]),
+            ("collection", "sheet.", LAYER, GHOSTS[LAYER]),
+            ("collection", "sheet.", KEYS, GHOSTS[KEYS]),
+            ("collection", "sheet.finds.", COLUMN, GHOSTS[COLUMN]),
+            ("attachment", "", str(hidden["id"]), "987654"),
+            ("comment", "", str(thread), "987654"),
         ):
             if "{" + name + "}" not in path:
                 continue
-            for filled in fillings(path.removeprefix("/api/v1"), {**words_of, name: [secret]}):
+            for filled in fillings(address_of(path), {**words_of, name: [before + secret]}):
                 for method in operations:
                     if method not in ("get", "post", "put", "patch", "delete"):
                         continue
@@ -405,6 +423,15 @@ def doors_closed(server, token, words_of, hidden, thread):
 def names_unknown(server, token, camera):
     """Uses the names of secrets in expressions, filters and lists."""
     asked = [
+        (
+            "GET",
+            query(
+                "//ogc/collections/sheet/position",
+                coords="POINT(0.05 0.05)",
+                **{"parameter-name": LAYER},
+            ),
+            None,
+        ),
         (
             "GET",
             query(M + "/position", coords="POINT Z(50 50 0)", **{"parameter-name": LAYER}),

@@ -3764,6 +3764,23 @@ export interface components {
             };
             content?: never;
         };
+        OgcDocument: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/json": Record<string, never>;
+                "text/html": string;
+            };
+        };
+        OgcValues: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/prs.coverage+json": Record<string, never>;
+            };
+        };
         Stale: {
             headers: {
                 [name: string]: unknown;
@@ -3854,9 +3871,11 @@ export interface components {
     parameters: {
         after: string;
         at: string;
+        collection: string;
         column: string;
         comment: number;
         entry: components["schemas"]["BinEntryId"];
+        feature: string;
         group: number;
         idempotency_key: string;
         if_match: string;
@@ -3872,7 +3891,16 @@ export interface components {
         model: string;
         object: number;
         offset: number;
+        ogc_along: "-x" | "+x" | "-y" | "+y" | "-z" | "+z";
+        ogc_bbox: string;
+        ogc_bbox_crs: string;
+        ogc_covjson: "CoverageJSON" | "covjson" | "json";
+        ogc_crs: string;
+        ogc_datetime: string;
+        ogc_format: "json" | "html";
+        ogc_layers: string;
         photograph: number;
+        plane: "xy" | "xz" | "yz";
         project: string;
         provider: string;
         selection: string;

@@ -46,9 +46,9 @@ export interface SelectionRequest {
 }
 
 /**
- * The dialog that unrolls the model, the dialogs for a condition report and for a 3D model, or the
- * photographs.
+ * The dialog that unrolls the model, the dialogs for a condition report, for a 3D model and for GIS
+ * programs, or the photographs.
  */
 export interface ModelDialogRequest {
-  dialog: "rollout" | "report" | "export" | "photographs";
+  dialog: "rollout" | "report" | "export" | "gis" | "photographs";
 }

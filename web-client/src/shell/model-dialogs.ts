@@ -9,6 +9,7 @@ import "../features/records/delete-record-dialog";
 import "../features/exports/export-dialog";
 import "../features/figures/figure-dialog";
 import "../features/figures/rollout-dialog";
+import "../features/gis/gis-dialog";
 import "../features/account/kiosks-dialog";
 import "../features/layers/layer-dialog";
 import "../features/layers/map-dialog";

@@ -235,6 +235,7 @@ function ofModel(host: PageHost): Command[] {
     ...(mayDownload(session.role, model)
       ? [opening(host, group, "cube", texts.model_export.open, { dialog: "export" })]
       : []),
+    opening(host, group, "link", texts.gis.open, { dialog: "gis" }),
     ...(session.canCurate
       ? [opening(host, group, "measure", texts.model.correct_size, { dialog: "scale" })]
       : []),

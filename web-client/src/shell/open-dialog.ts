@@ -153,6 +153,8 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
       return html`<strata-report-dialog .session=${session} @closed=${closed}></strata-report-dialog>`;
     case "export":
       return html`<strata-export-dialog .session=${session} @closed=${closed}></strata-export-dialog>`;
+    case "gis":
+      return html`<strata-gis-dialog .session=${session} @closed=${closed}></strata-gis-dialog>`;
     case "kiosks":
       return session.model
         ? html`<strata-kiosks-dialog

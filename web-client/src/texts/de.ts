@@ -1756,6 +1756,7 @@ export const texts = {
     title: "3D-Modell exportieren",
     open: "3D-Modell exportieren …",
   },
+  gis: { part: "GIS-Programme", title: "GIS-Programm verbinden", open: "GIS-Programm verbinden …" },
 
   tours: {
     title: "Führungen",

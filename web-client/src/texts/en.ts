@@ -1707,6 +1707,7 @@ export const texts = {
 
   condition_report: { title: "Condition report", open: "Condition report…" },
   model_export: { part: "3D model", title: "Export 3D model", open: "Export 3D model…" },
+  gis: { part: "GIS programs", title: "Connect a GIS program", open: "Connect a GIS program…" },
 
   tours: {
     title: "Tours",

@@ -1751,6 +1751,11 @@ export const texts = {
     title: "Exportar modelo 3D",
     open: "Exportar modelo 3D…",
   },
+  gis: {
+    part: "Programas SIG",
+    title: "Conectar un programa SIG",
+    open: "Conectar un programa SIG…",
+  },
   tours: {
     title: "Recorridos",
     new: "Nuevo recorrido…",

@@ -93,6 +93,22 @@ export const laterTexts = {
     saved: (file) => `Gespeichert als ${file}.`,
     ready: "Das 3D-Modell ist fertig",
   },
+  gis_dialog: {
+    lead: "GIS-Programme wie QGIS und GDAL können die Ebenen aller Modelle ohne Dateien lesen (OGC API).",
+    address: "Adresse",
+    address_hint: "In QGIS: Layer → Layer hinzufügen → WFS-/OGC-API-Features-Layer hinzufügen …",
+    token: "Anmeldung",
+    token_hint:
+      "Erstellen Sie in Ihrem Konto ein Token für Skripte. Geben Sie in QGIS unter Authentifizierung → Basic Ihren Benutzernamen ein, und das Token als Passwort.",
+    raster: "Eine Ebene als GeoTIFF",
+    layer: "Ebene",
+    along: "Blickrichtung",
+    usual: "Automatisch",
+    along_hint:
+      "„Automatisch“ nimmt für ein Modell mit Koordinatensystem den Boden, sonst die größte Seite des Modells.",
+    save: "GeoTIFF speichern",
+    collections: "Zeigen, was GIS-Programme von diesem Modell sehen",
+  },
   report_dialog: {
     format: "Dateiformat",
     formats: { docx: "Word-Dokument", pdf: "PDF/A" },

@@ -91,6 +91,22 @@ export const laterTexts = {
     saved: (file: string) => `Saved as ${file}.`,
     ready: "The 3D model is ready",
   },
+  gis_dialog: {
+    lead: "GIS programs such as QGIS and GDAL can read the layers of all models without files (OGC API).",
+    address: "Address",
+    address_hint: "In QGIS: Layer → Add Layer → Add WFS / OGC API – Features Layer…",
+    token: "Authentication",
+    token_hint:
+      "Create a token for scripts in your account. In QGIS, under Authentication → Basic, enter your user name, and the token as the password.",
+    raster: "A layer as GeoTIFF",
+    layer: "Layer",
+    along: "Direction of view",
+    usual: "Automatic",
+    along_hint:
+      "“Automatic” uses the ground for a model with a coordinate system, and otherwise the largest side of the model.",
+    save: "Save GeoTIFF",
+    collections: "Show what GIS programs see of this model",
+  },
   report_dialog: {
     format: "File format",
     formats: { docx: "Word document", pdf: "PDF/A" },

@@ -94,6 +94,22 @@ export const laterTexts = {
     saved: (file) => `Guardado como ${file}.`,
     ready: "El modelo 3D está listo",
   },
+  gis_dialog: {
+    lead: "Los programas SIG como QGIS y GDAL pueden leer las capas de todos los modelos sin archivos (OGC API).",
+    address: "Dirección",
+    address_hint: "En QGIS: Capa → Añadir capa → Añadir capa WFS / OGC API – Features…",
+    token: "Autenticación",
+    token_hint:
+      "Cree en su cuenta un token para scripts. En QGIS, en Autenticación → Básica, escriba su nombre de usuario, y el token como contraseña.",
+    raster: "Una capa como GeoTIFF",
+    layer: "Capa",
+    along: "Dirección de la vista",
+    usual: "Automática",
+    along_hint:
+      "«Automática» usa el suelo si el modelo tiene un sistema de coordenadas, y si no, el lado más grande del modelo.",
+    save: "Guardar GeoTIFF",
+    collections: "Mostrar lo que los programas SIG ven de este modelo",
+  },
   report_dialog: {
     format: "Formato de archivo",
     formats: { docx: "Documento de Word", pdf: "PDF/A" },

@@ -107,6 +107,10 @@ export class StrataViewPanel extends SidePanel {
             <div><button @click=${() => show("export")}>${icon("cube")}${texts.model_export.open}</button></div>
           </div>`
         : nothing
-    }`;
+    }
+    <div class="part">
+      <h3>${texts.gis.part}</h3>
+      <div><button @click=${() => show("gis")}>${icon("link")}${texts.gis.open}</button></div>
+    </div>`;
   }
 }

@@ -10,6 +10,7 @@ import { formatList, readNumber } from "../../core/locale";
 import { formatArea } from "../../domain/measure";
 import type { EditResult } from "../../core/protocol.gen";
 import type { Layer, MapContents } from "../../core/types";
+import type { Along } from "../../domain/along";
 import "../../ui/dialog";
 import "../../ui/file-choice";
 import { followSession } from "../../session/follow-session";
@@ -34,7 +35,6 @@ import {
   tableKind,
   unknownFile,
   worldNumbers,
-  type Along,
   type ColorRow,
   type PictureMode,
 } from "./map-file";

@@ -3,9 +3,6 @@
 import { readNumber, typedNumber } from "../../core/locale";
 import type { MapColor, MapContents } from "../../core/types";
 
-export const kAlong = ["-z", "+z", "-y", "+y", "-x", "+x"] as const;
-export type Along = (typeof kAlong)[number];
-
 export const kTableEndings = ["csv", "tsv", "txt"] as const;
 export const kPictureEndings = [
   "tif",

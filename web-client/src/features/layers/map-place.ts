@@ -4,7 +4,7 @@
 import { html, nothing, type TemplateResult } from "lit";
 import { formatNumber } from "../../domain/measure";
 import type { MapContents } from "../../core/types";
-import { kAlong, type Along } from "./map-file";
+import { kAlong, type Along } from "../../domain/along";
 import { texts } from "../../texts";
 
 const words = texts.maps;

@@ -4,16 +4,10 @@ import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { nameOfFile } from "../../domain/file-names";
 import type { MapContents } from "../../core/types";
+import type { Along } from "../../domain/along";
 import "../../ui/dialog";
 import "../../ui/file-choice";
-import {
-  accepted,
-  fileKind,
-  kPictureEndings,
-  unknownFile,
-  worldNumbers,
-  type Along,
-} from "./map-file";
+import { accepted, fileKind, kPictureEndings, unknownFile, worldNumbers } from "./map-file";
 import {
   crsInDoubt,
   crsQuery,
