@@ -18,6 +18,7 @@ IN_PROJECTS = (
     "job",
     "kiosk",
 )
+OF_A_LAYER = ("/items", "/coverage", "/schema")  # parts of collections that a model lacks
 OF_THE_SITE = ("user", "group", "session", "token", "tool", "provider")
 
 
@@ -130,6 +131,8 @@ def doors(server, site):
                 continue
             there, ghost = str(site[place][ref]), "987654321" if ref == "id" else "ghost"
             address = re.sub(r"\{(?!" + place + r"\})\w+\}", "1", address_of(path))
+            if any(part in path for part in OF_A_LAYER):
+                address = address.replace("{collection}", "{collection}.1")
             for method in operations:
                 if method in ("get", "post", "put", "patch", "delete"):
                     yield method.upper(), address.replace(
