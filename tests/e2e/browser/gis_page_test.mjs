@@ -50,7 +50,9 @@ test("the collections are shown as a page", async () => {
     dialog().getByRole("link", { name: words.gis_dialog.collections }).click(),
   ]);
   await shown.getByRole("heading", { name: /Demo pot/ }).waitFor();
-  assert.ok(await shown.getByRole("link", { name: /position/ }).count());
+  await shown.getByText("/ogc/collections/demo-pot/position").waitFor();
+  await shown.getByRole("link", { name: /^The layer / }).first().click();
+  await shown.getByRole("link", { name: "The values as GeoTIFF" }).waitFor();
   await shown.goto(`${server.url}/ogc/collections?f=html`);
   await shown.getByRole("link", { name: "demo-pot", exact: true }).waitFor();
   if (process.env.STRATA_TEST_OUTPUT)

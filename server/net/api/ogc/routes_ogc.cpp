@@ -117,8 +117,13 @@ Result<Response> collections(const RouteContext& context, const Request& request
   for (const Model& model : models) {
     if (!request.principal->sees(model.project_id)) continue;
     const auto plane = STRATA_TRY(plane_of(request, model));
-    STRATA_TRY(add_collections(context, place, model, plane,
-                               request.principal->roles.in(model.project_id), list));
+    const std::size_t before = list.size();
+    const auto added = add_collections(context, place, model, plane,
+                                       request.principal->roles.in(model.project_id), list);
+    if (added) continue;
+    if (added.error().code != ErrorCode::not_found) return tl::unexpected(added.error());
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(before),
+               list.end());  // deleted meanwhile
   }
   return ogc_document(context, request,
                       {{"title", "Collections"},
