@@ -10,6 +10,7 @@
 #include "domain/scene/model.h"
 #include "media/picture_writer.h"
 #include "mesh/io/gltf/write_glb.h"
+#include "mesh/io/write_obj.h"
 #include "query/sampling/baked_colors.h"
 #include "room/caches/surface_image_cache.h"
 #include "room/rooms.h"
@@ -24,7 +25,7 @@ constexpr JpegSettings kTexture{92, true};
 constexpr double kEncoded = 0.85, kIdsWritten = 0.9;
 
 // Encodes the texture in pieces, so that a job can be cancelled.
-Result<mesh::GlbImage> encode(const Picture& picture, PictureFormat format, Progress& progress) {
+Result<mesh::SceneImage> encode(const Picture& picture, PictureFormat format, Progress& progress) {
   constexpr int kRows = 64;
   PictureWriter writer(format, picture.width, picture.height, kTexture);
   const auto row_bytes = std::size_t{4} * static_cast<std::size_t>(picture.width);
@@ -34,11 +35,11 @@ Result<mesh::GlbImage> encode(const Picture& picture, PictureFormat format, Prog
     const auto rows = static_cast<std::size_t>(std::min(kRows, picture.height - y));
     writer.put({picture.rgba.data() + row_bytes * static_cast<std::size_t>(y), row_bytes * rows});
   }
-  return mesh::GlbImage{std::string(media_type(format)), writer.finish()};
+  return mesh::SceneImage{std::string(media_type(format)), writer.finish()};
 }
 
-Result<mesh::GlbImage> make_texture(const Services& services, const ModelExport& request,
-                                    Progress& progress) {
+Result<mesh::SceneImage> make_texture(const Services& services, const ModelExport& request,
+                                      Progress& progress) {
   const int size = request.texture_size ? *request.texture_size : default_texture_size(request);
   const auto geometry = request.room->surface().geometry();
   const auto memory = STRATA_TRY(services.rooms.memory().reserve(
@@ -81,7 +82,8 @@ Result<std::shared_ptr<const TemporaryFile>> export_model(const Services& servic
   model.metres_per_unit = description.metres();
   model.up = description.up;
   model.unlit = request.unlit;
-  STRATA_TRY(mesh::check_glb_size(*model.geometry));  // before the long work
+  const bool is_glb = request.format == ModelFileFormat::glb;
+  if (is_glb) STRATA_TRY(mesh::check_glb_size(*model.geometry));  // before the long work
   auto color = STRATA_TRY(make_texture(services, request, progress));
   model.color = std::move(color);
   progress.begin_stage(kEncoded, kIdsWritten);
@@ -96,9 +98,10 @@ Result<std::shared_ptr<const TemporaryFile>> export_model(const Services& servic
   }
   progress.begin_stage(kIdsWritten, 1);
   auto file = std::make_shared<TemporaryFile>(folder / (to_string(random_uuid()) + ".model"));
-  file->name = description.slug + ".glb";
-  file->media_type = "model/gltf-binary";
-  file->bytes = STRATA_TRY(mesh::write_glb(model, file->path, progress));
+  file->name = description.slug + (is_glb ? ".glb" : ".zip");
+  file->media_type = is_glb ? "model/gltf-binary" : "application/zip";
+  file->bytes = STRATA_TRY(is_glb ? mesh::write_glb(model, file->path, progress)
+                                  : mesh::write_obj(model, description.slug, file->path, progress));
   return file;
 }
 

@@ -19,14 +19,18 @@
 
 namespace strata::app {
 
+// OBJ files are in a zip with their material and texture.
+enum class ModelFileFormat { glb, obj };
+
 // The settings of a 3D model for other programs. The caller has checked the user's request.
 struct ModelExport {
   std::shared_ptr<room::Room> room;  // as visible to the caller
   Role role = Role::viewer;
-  room::At at;                      // the state of the layers and records; empty: current state
-  room::ViewSettings shown;         // layers and surface images; the light has no effect
-  std::vector<Layer> layers;        // in the texture, from bottom to top
-  std::optional<Layer> features;    // its classes or records become features
+  room::At at;                // the state of the layers and records; empty: current state
+  room::ViewSettings shown;   // layers and surface images; the light has no effect
+  std::vector<Layer> layers;  // in the texture, from bottom to top
+  ModelFileFormat format = ModelFileFormat::glb;
+  std::optional<Layer> features;    // its classes or records become features; only for GLB
   std::optional<int> texture_size;  // a power of two; nullopt: default_texture_size
   PictureFormat texture_format = PictureFormat::jpeg;  // or png
   bool unlit = false;
@@ -37,7 +41,7 @@ struct ModelExport {
 // images, but at least 1024 and at most 4096.
 int default_texture_size(const ModelExport& request);
 
-// Writes the model with its texture to a GLB file in `folder`. The texture shows what an unlit
+// Writes the model with its texture to a file in `folder`. The texture shows what an unlit
 // image of the model shows: the scan, its visible surface images, and above them the layers.
 // Hatches and dots have the full color of their class, and an outline has no color. Returns 422 for
 // a palette that uses a column invisible to the role and for features without values, 413 for a

@@ -146,7 +146,20 @@ class VertexSplitter {
   std::vector<std::uint32_t> position_of_;  // new number of each mesh position
 };
 
+// Returns a component of a packed normal (GL_INT_2_10_10_10_REV).
+float component(std::uint32_t packed, int axis) {
+  const auto bits = static_cast<std::int32_t>(packed << (22 - 10 * axis));
+  return static_cast<float>(bits >> 22);
+}
+
 }  // namespace
+
+glm::vec3 normal_of(const Vertex& vertex) {
+  const glm::vec3 normal(component(vertex.normal, 0), component(vertex.normal, 1),
+                         component(vertex.normal, 2));
+  const float length = glm::length(normal);
+  return length > 0 ? normal / length : glm::vec3(0, 0, 1);
+}
 
 void find_boxes(Geometry& geometry) {
   geometry.clusters.clear();

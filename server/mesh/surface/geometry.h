@@ -23,6 +23,8 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 32);
 
+glm::vec3 normal_of(const Vertex& vertex);  // unit length
+
 // The box of a run of triangles, in model space.
 struct ClusterBox {
   glm::vec3 min{0}, max{0};

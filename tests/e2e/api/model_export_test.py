@@ -1,4 +1,4 @@
-"""A model with its layers as a GLB file for other programs."""
+"""A model with its layers as a GLB or OBJ file for other programs."""
 import math
 import re
 import struct
@@ -8,6 +8,7 @@ import pytest
 from support.colored_layers import make_colored_layers
 from support.glb import Glb, pixel_at, read_png, validate
 from support.meshes import bumpy_ball, folded_grid
+from support.obj import Obj
 from support.pictures import png
 from support.ply import read_ply
 from support.readings import dab
@@ -73,7 +74,9 @@ def server(server):
 def export(server, model=M, token=True, **wish):
     answer = server.request("POST", model + "/exports", wish, token=token)
     assert answer.status == 200, answer
-    assert answer.headers["Content-Type"] == "model/gltf-binary", answer.headers.items()
+    kinds = {"glb": "model/gltf-binary", "obj": "application/zip"}
+    kind = kinds[wish.get("format", "glb")]
+    assert answer.headers["Content-Type"] == kind, answer.headers.items()
     return answer.body
 
 
@@ -205,13 +208,14 @@ def test_pixels_between_the_charts_continue_the_colors(server):
     assert (image == [0x20, 0xC0, 0x60, 255]).all(), numpy.unique(image.reshape(-1, 4), axis=0)
 
 
+@pytest.mark.parametrize("file_format,ending", [("glb", "glb"), ("obj", "zip")])
 @pytest.mark.parametrize("name,up", [("sheet", "z"), ("ball", "y")])
-def test_the_file_is_the_same_surface_when_imported_again(server, name, up):
+def test_the_file_is_the_same_surface_when_imported_again(server, name, up, file_format, ending):
     server.ok("PATCH", f"/models/{name}", {"up": up})
     model = server.get(f"/models/{name}").json()
-    content = export(server, f"/models/{name}", texture_size=512)
-    again = f"{name}-again"
-    server.import_model(content, "model.glb", name=again)
+    content = export(server, f"/models/{name}", texture_size=512, format=file_format)
+    again = f"{name}-{file_format}-again"
+    server.import_model(content, f"model.{ending}", name=again)
     other = server.get(f"/models/{again}").json()
     assert other["triangles"] == model["triangles"], (model, other)
     assert other["area_m2"] == pytest.approx(model["area_m2"], rel=1e-5), (model, other)
@@ -223,8 +227,58 @@ def test_the_file_is_the_same_surface_when_imported_again(server, name, up):
         )
     assert other["bounds"]["min"] == pytest.approx(lowest, abs=1e-6), (model, other)
     assert other["bounds"]["max"] == pytest.approx(highest, abs=1e-6), (model, other)
-    glb = Glb(content)
-    assert area_of(glb.places(), glb.triangles()) == pytest.approx(model["area_m2"], rel=1e-5)
+    if file_format == "glb":
+        glb = Glb(content)
+        places, triangles = glb.places(), glb.triangles()
+    else:
+        obj = Obj(content)
+        places, triangles = obj.places, obj.corners[:, :, 0]
+    assert area_of(places, triangles) == pytest.approx(model["area_m2"], rel=1e-5)
+
+
+def test_an_obj_file_is_the_same_surface_as_a_glb_file(server):
+    wish = {"texture_size": 512, "texture_format": "png"}
+    glb = Glb(export(server, **wish))
+    obj = Obj(export(server, format="obj", unlit=True, **wish))
+    assert (obj.name, obj.material["illum"]) == ("sheet", "0"), obj.material
+    assert (read_png(obj.image) == read_png(glb.color_image())).all()
+    assert 'model: "Sheet"' in obj.comments, obj.comments
+    corners = glb.triangles().reshape(-1)
+    numbers = obj.corners.reshape(-1, 3)
+    assert abs(obj.places[numbers[:, 0]] - glb.places()[corners]).max() < 1e-8
+    uvs = glb.attribute("TEXCOORD_0")[corners]
+    uvs = numpy.stack([uvs[:, 0], 1 - uvs[:, 1]], axis=1)
+    assert abs(obj.uvs[numbers[:, 1]] - uvs).max() < 1e-6
+    # The normals of GLB are in the axes of the model.
+    normals = glb.attribute("NORMAL")[corners]
+    turned = numpy.stack([normals[:, 0], normals[:, 2], -normals[:, 1]], axis=1)
+    assert abs(obj.normals[numbers[:, 2]] - turned).max() < 1e-4
+    # A position is shared by all triangles around it, also at the seams of the atlas.
+    assert len(obj.places) == len({tuple(each) for each in obj.places}) == 41 * 41
+
+
+def test_an_obj_file_has_the_same_colors_when_imported_again(server):
+    content = export(
+        server, format="obj", texture_format="png", texture_size=2048, layers=only(server, "units")
+    )
+    server.import_model(content, "model.zip", name="Colored")
+    query = "vertices.ply?colors=layers"
+    given = read_ply(server.ok("GET", f"{M}/{query}&layers=units").body)[0]
+    found = read_ply(server.ok("GET", f"/models/colored/{query}").body)[0]
+    channels = ("red", "green", "blue")
+    given_places = numpy.array([[each[axis] for axis in "xyz"] for each in given], float)
+    given_colors = numpy.array([[each[name] for name in channels] for each in given], int)
+    places = 1000 * numpy.array([[each[axis] for axis in "xyz"] for each in found], float)
+    places = numpy.stack([places[:, 0], -places[:, 2], places[:, 1]], axis=1)
+    colors = numpy.array([[each[name] for name in channels] for each in found], int)
+    compared, kinds = 0, set()
+    for place, color in zip(places, colors):
+        near = given_colors[numpy.linalg.norm(given_places - place, axis=1) < 4]
+        if (near.max(axis=0) - near.min(axis=0)).max() > 2:
+            continue  # next to the edge of a class
+        assert abs(near[0] - color).max() <= 3, (place, near[0], color)
+        compared, kinds = compared + 1, kinds | {tuple(near[0])}
+    assert compared > 1000 and len(kinds) >= 2, (compared, kinds)
 
 
 def test_large_coordinates_keep_their_precision(server):
@@ -255,6 +309,11 @@ def test_large_coordinates_keep_their_precision(server):
         key = (round(float(x) * 1000), round(float(y) * 1000))
         assert abs(given[key] - z) < 1e-6, (key, z)
     assert len({tuple(place) for place in places}) == len(rows)
+    places = Obj(export(server, "/models/relief", texture_size=512, format="obj")).places
+    assert len(places) == len(rows)
+    for x, z, y in places:
+        key = (round(float(x) * 1000), round(float(-y) * 1000))
+        assert abs(given[key] - z) < 1e-7, (key, z)
 
 
 def test_records_become_features_with_their_columns(server, tmp_path):
@@ -317,6 +376,17 @@ def test_columns_that_a_person_does_not_see_are_left_out(server):
     assert "price" not in Glb(content).properties() and b"price" not in content.lower()
 
 
+def test_a_job_makes_a_zip(server):
+    prefer = {"Prefer": "respond-async"}
+    wish = {"format": "obj", "texture_size": 512}
+    job = server.request("POST", M + "/exports", wish, headers=prefer).json()["id"]
+    done = server.wait_for_job(job)
+    assert (done["state"], done["file"]["name"]) == ("done", "sheet.zip"), done
+    file = server.ok("GET", f"/jobs/{job}/file")
+    assert len(file.body) == done["file"]["bytes"]
+    assert len(Obj(file.body).corners) == server.get(M).json()["triangles"]
+
+
 def test_a_job_makes_the_file_and_can_be_cancelled(server):
     prefer = {"Prefer": "respond-async"}
     wish = {"features": "finds", "texture_size": 1024}
@@ -344,6 +414,8 @@ def test_wrong_requests_are_refused(server):
         ({"features": "empty", "texture_size": 512}, 422, "features"),
         ({"texture_size": 100}, 422, "texture_size"),
         ({"texture_format": "webp"}, 422, "texture_format"),
+        ({"format": "fbx"}, 422, "format"),
+        ({"format": "obj", "features": "units"}, 422, "features"),
         ({"at": 99999}, 422, "at"),
     ):
         answer = server.request("POST", M + "/exports", wish)

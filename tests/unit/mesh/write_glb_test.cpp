@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "core/temporary_file.h"
 #include "domain/scene/up.h"
-#include "media/picture.h"
 #include "mesh/io/load.h"
 #include "support/meshes.h"
+#include "support/scene_models.h"
 
 namespace strata::mesh {
 namespace {
@@ -19,33 +17,11 @@ namespace {
 using nlohmann::json;
 using Bytes = std::vector<std::uint8_t>;
 
-class CancelledAt : public Progress {
- public:
-  explicit CancelledAt(int question) : left_(question) {}
-  bool cancelled() const override { return --left_ < 0; }
-
- private:
-  mutable int left_;
-};
-
-GlbImage dot() {
-  const Bytes rgba{200, 100, 50, 255};
-  return {"image/png", encode_png(rgba, 1, 1)};
-}
+using test::dot;
+using test::geometry_of;
 
 GlbModel model_of(std::shared_ptr<const Geometry> geometry) {
-  GlbModel model;
-  model.name = "Pot „1“";
-  model.geometry = std::move(geometry);
-  model.color = dot();
-  return model;
-}
-
-std::shared_ptr<const Geometry> geometry_of(const TriangleMesh& mesh) {
-  Progress progress;
-  auto atlas = make_atlas(mesh, 512, progress);
-  EXPECT_TRUE(atlas);
-  return std::make_shared<const Geometry>(build_geometry(mesh, *atlas));
+  return test::scene_of<GlbModel>(std::move(geometry));
 }
 
 std::filesystem::path new_file() {
@@ -57,8 +33,7 @@ Bytes written(const GlbModel& model) {
   const TemporaryFile file(new_file());
   const auto bytes = write_glb(model, file.path, progress);
   EXPECT_TRUE(bytes) << bytes.error().detail;
-  std::ifstream in(file.path, std::ios::binary);
-  Bytes content{std::istreambuf_iterator<char>(in), {}};
+  Bytes content = test::content_of(file.path);
   EXPECT_EQ(content.size(), *bytes);
   return content;
 }
@@ -135,11 +110,7 @@ TEST(WriteGlb, up_becomes_y_and_the_front_faces_z_without_a_mirror) {
 }
 
 TEST(WriteGlb, coordinates_far_from_the_origin_keep_the_precision_of_the_mesh) {
-  TriangleMesh mesh;
-  const glm::dvec3 far(562'000.125, 5'117'000.375, 2500.5);
-  mesh.positions = {far, far + glm::dvec3(0.001, 0, 0), far + glm::dvec3(0, 0.001, 0.0005)};
-  mesh.triangles = {0, 1, 2};
-  const auto geometry = geometry_of(mesh);
+  const auto geometry = geometry_of(test::far_triangle());
   const json document = json_of(written(model_of(geometry)));
   for (const Vertex& vertex : geometry->vertices) {
     const glm::dvec3 place = in_scene(document, glm::dvec3(vertex.position)),
@@ -189,7 +160,7 @@ TEST(WriteGlb, features_have_a_texture_with_their_ids_and_a_property_table) {
 
 TEST(WriteGlb, writing_ends_when_it_is_cancelled_or_the_disk_refuses) {
   const GlbModel model = model_of(geometry_of(test::mesh_classes().front().mesh));
-  CancelledAt cancelled(0);
+  test::CancelledAt cancelled(0);
   const TemporaryFile file(new_file());
   const auto ended = write_glb(model, file.path, cancelled);
   ASSERT_FALSE(ended);

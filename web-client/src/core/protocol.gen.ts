@@ -4044,14 +4044,16 @@ export interface ModelExportRequest {
   layers?: LayerOverride[];
   /** The visible surface images from bottom to top. Default: the surface images that are visible by default. */
   looks?: LookShown[];
-  /** A layer whose records or classes become features with properties. Default: no features. */
+  /** `glb`: one GLB file (glTF 2.0). `obj`: a zip with a Wavefront OBJ file, its material (MTL) and its texture. Default: "glb". */
+  format?: "glb" | "obj";
+  /** A layer whose records or classes become features with properties. Only for `glb`. Default: no features. */
   features?: LayerRef;
   at?: At;
   /** The width and height of the texture in pixels. The server uses the next power of two. Default: the size that shows each texel of the layers and each pixel of the surface images, but at least 1024 and at most 4096. */
   texture_size?: number;
   /** `png` keeps the exact colors, but the file is larger. Default: "jpeg". */
   texture_format?: "jpeg" | "png";
-  /** Whether programs show the colors of the texture without light (KHR_materials_unlit). Colors are then the same as in the legend, but the relief of the surface is not visible. Default: false. */
+  /** Whether programs show the colors of the texture without light (KHR_materials_unlit; in OBJ, the illumination model 0). Colors are then the same as in the legend, but the relief of the surface is not visible. Default: false. */
   unlit?: boolean;
 }
 

@@ -5217,6 +5217,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
+                    "application/zip": string;
                     "model/gltf-binary": string;
                 };
             };

@@ -1263,6 +1263,22 @@ void read(const nlohmann::json& json, ReportPart& value) {
 
 nlohmann::json to_json(const ReportPart& value) { return name(value); }
 
+std::string_view name(ModelExportRequestFormat value) {
+  switch (value) {
+    case ModelExportRequestFormat::glb: return "glb";
+    case ModelExportRequestFormat::obj: return "obj";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ModelExportRequestFormat& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "glb") value = ModelExportRequestFormat::glb;
+  if (text == "obj") value = ModelExportRequestFormat::obj;
+}
+
+nlohmann::json to_json(const ModelExportRequestFormat& value) { return name(value); }
+
 std::string_view name(ModelExportRequestTextureFormat value) {
   switch (value) {
     case ModelExportRequestTextureFormat::jpeg: return "jpeg";
@@ -4986,6 +5002,7 @@ nlohmann::json to_json(const ReportRequest& value) {
 void read(const nlohmann::json& json, ModelExportRequest& value) {
   read_optional_member(json, "layers", value.layers);
   read_optional_member(json, "looks", value.looks);
+  read_optional_member(json, "format", value.format);
   read_optional_member(json, "features", value.features);
   read_optional_member(json, "at", value.at);
   read_optional_member(json, "texture_size", value.texture_size);
@@ -4997,6 +5014,7 @@ nlohmann::json to_json(const ModelExportRequest& value) {
   nlohmann::json json = nlohmann::json::object();
   write_optional_member(json, "layers", value.layers);
   write_optional_member(json, "looks", value.looks);
+  write_member(json, "format", value.format);
   write_optional_member(json, "features", value.features);
   write_optional_member(json, "at", value.at);
   write_optional_member(json, "texture_size", value.texture_size);

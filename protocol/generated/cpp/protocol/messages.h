@@ -4017,6 +4017,11 @@ nlohmann::json to_json(const ReportRequest& value);
 template <>
 inline constexpr Schema kSchemaOf<ReportRequest> = Schema::ReportRequest;
 
+enum class ModelExportRequestFormat { glb, obj };
+std::string_view name(ModelExportRequestFormat value);
+void read(const nlohmann::json& json, ModelExportRequestFormat& value);
+nlohmann::json to_json(const ModelExportRequestFormat& value);
+
 enum class ModelExportRequestTextureFormat { jpeg, png };
 std::string_view name(ModelExportRequestTextureFormat value);
 void read(const nlohmann::json& json, ModelExportRequestTextureFormat& value);
@@ -4029,7 +4034,11 @@ struct ModelExportRequest {
   // The visible surface images from bottom to top. Default: the surface images that are visible by
   // default.
   std::optional<std::vector<LookShown>> looks;
-  // A layer whose records or classes become features with properties. Default: no features.
+  // `glb`: one GLB file (glTF 2.0). `obj`: a zip with a Wavefront OBJ file, its material (MTL) and
+  // its texture.
+  ModelExportRequestFormat format = ModelExportRequestFormat::glb;
+  // A layer whose records or classes become features with properties. Only for `glb`. Default: no
+  // features.
   std::optional<LayerRef> features;
   std::optional<At> at;
   // The width and height of the texture in pixels. The server uses the next power of two. Default:
@@ -4038,8 +4047,9 @@ struct ModelExportRequest {
   std::optional<int> texture_size;
   // `png` keeps the exact colors, but the file is larger.
   ModelExportRequestTextureFormat texture_format = ModelExportRequestTextureFormat::jpeg;
-  // Whether programs show the colors of the texture without light (KHR_materials_unlit). Colors are
-  // then the same as in the legend, but the relief of the surface is not visible.
+  // Whether programs show the colors of the texture without light (KHR_materials_unlit; in OBJ, the
+  // illumination model 0). Colors are then the same as in the legend, but the relief of the surface
+  // is not visible.
   bool unlit = false;
   bool operator==(const ModelExportRequest&) const = default;
 };

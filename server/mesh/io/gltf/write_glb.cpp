@@ -8,7 +8,6 @@
 #include <span>
 
 #include "core/version.h"
-#include "domain/scene/up.h"
 
 namespace strata::mesh {
 namespace {
@@ -34,24 +33,9 @@ std::size_t aligned(std::size_t bytes) {
   return (bytes + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-// Returns a component of a packed normal (GL_INT_2_10_10_10_REV).
-float component(std::uint32_t packed, int axis) {
-  const auto bits = static_cast<std::int32_t>(packed << (22 - 10 * axis));
-  return static_cast<float>(bits >> 22);
-}
-
-glm::vec3 normal_of(const Vertex& vertex) {
-  const glm::vec3 normal(component(vertex.normal, 0), component(vertex.normal, 1),
-                         component(vertex.normal, 2));
-  const float length = glm::length(normal);
-  return length > 0 ? normal / length : glm::vec3(0, 0, 1);
-}
-
 // Returns the matrix of the node, column by column.
 nlohmann::json matrix_of(const GlbModel& model) {
-  const UpFrame frame = up_frame(model.up);
-  // The rows of the rotation: +x to the right, +y up, and +z toward the viewer of the front.
-  const glm::dvec3 rows[3] = {frame.right, frame.up, -frame.into};
+  const auto rows = scene_axes(model);
   nlohmann::json matrix = nlohmann::json::array();
   const auto put = [&](double value) { matrix.push_back(value == 0 ? 0.0 : value); };  // no -0
   for (int column = 0; column < 3; ++column) {
@@ -167,7 +151,7 @@ class Document {
   }
 
   // Adds the image and its texture with the last sampler.
-  void add_image(const GlbImage& image, const std::string& name) {
+  void add_image(const SceneImage& image, const std::string& name) {
     const std::size_t view = add_view(nlohmann::json::object(), image.bytes.size());
     json_["images"].push_back(
         {{"name", name}, {"bufferView", view}, {"mimeType", image.media_type}});

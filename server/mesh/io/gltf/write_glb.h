@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,38 +9,25 @@
 #include "core/error.h"
 #include "core/progress.h"
 #include "mesh/io/gltf/property_table.h"
-#include "mesh/surface/geometry.h"
+#include "mesh/io/scene_model.h"
 
 namespace strata::mesh {
-
-// An image in the atlas of a model, as a PNG or JPEG file.
-struct GlbImage {
-  std::string media_type;  // "image/png" or "image/jpeg"
-  std::vector<std::uint8_t> bytes;
-};
 
 // The features of a surface (EXT_mesh_features) and their properties.
 struct GlbFeatures {
   std::string name;  // of the layer
   // PNG. The id of the feature of each pixel is in the first `channels` channels, with the lowest 8
   // bits in the first channel.
-  GlbImage ids;
+  SceneImage ids;
   int channels = 1;                         // 1…3
   std::uint32_t count = 0;                  // at least 1; ids are below `count`
   std::uint32_t none = 0;                   // the id of pixels without a feature; not below `count`
   std::vector<FeatureProperty> properties;  // with `count` values each
 };
 
-// A model as a scene of one mesh.
-struct GlbModel {
-  std::string name, copyright;
-  std::shared_ptr<const Geometry> geometry;
-  double metres_per_unit = 1;
-  std::string up = "z";  // one of kUpDirections
-  GlbImage color;        // base color, in the atlas
-  // Show the base color without light (KHR_materials_unlit). Programs without this extension show
-  // a rough surface that is not metallic, like all programs without `unlit`.
-  bool unlit = false;
+// `unlit` is KHR_materials_unlit. Programs without this extension show a rough surface that is not
+// metallic, like all programs without `unlit`.
+struct GlbModel : SceneModel {
   std::optional<GlbFeatures> features;
 };
 

@@ -31,7 +31,14 @@ Result<app::ModelExport> read_export(const RouteContext& context, const Request&
     return !read.shown.of(layer.id).visible.value_or(layer.visible);
   });
   room::sort_as_shown(read.layers, read.shown);
+  if (body.format == protocol::ModelExportRequestFormat::obj)
+    read.format = app::ModelFileFormat::obj;
   if (body.features) {
+    if (read.format != app::ModelFileFormat::glb)
+      return fail(
+          ErrorCode::invalid, "No features in OBJ files",
+          "OBJ files cannot contain features. Choose the format GLB, or send no `features`.",
+          "features");
     auto layer = read.room->layers().find(protocol::to_ref(*body.features));
     if (!layer) return at_field(layer.error(), "features");
     read.features = std::move(*layer);
