@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -13,6 +14,7 @@ struct TemporaryFile {
   std::filesystem::path path;
   std::string name, media_type;  // for the download
   std::uint64_t bytes = 0;
+  std::optional<std::uint64_t> triangles;  // of a 3D model
   TemporaryFile() = default;
   explicit TemporaryFile(std::filesystem::path file) : path(std::move(file)) {}
   TemporaryFile(const TemporaryFile&) = delete;

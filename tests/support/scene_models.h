@@ -39,6 +39,13 @@ inline std::shared_ptr<const mesh::Geometry> geometry_of(const mesh::TriangleMes
   return std::make_shared<const mesh::Geometry>(mesh::build_geometry(mesh, *atlas));
 }
 
+// The same with the texture coordinates of the mesh.
+inline std::shared_ptr<const mesh::Geometry> with_own_uvs(const mesh::TriangleMesh& mesh) {
+  mesh::Atlas atlas;
+  atlas.corner_uvs = mesh.corner_uvs;
+  return std::make_shared<const mesh::Geometry>(mesh::build_geometry(mesh, atlas));
+}
+
 // A triangle of a millimeter at UTM coordinates, which 32-bit floats would round to half a meter.
 inline mesh::TriangleMesh far_triangle() {
   mesh::TriangleMesh mesh;

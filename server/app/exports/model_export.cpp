@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "app/exports/exported_surface.h"
 #include "app/exports/feature_ids.h"
 #include "app/layers/drawn_layers.h"
 #include "app/layers/layer_features.h"
@@ -78,7 +79,8 @@ Result<std::shared_ptr<const TemporaryFile>> export_model(const Services& servic
   mesh::GlbModel model;
   model.name = description.name;
   model.copyright = description.credit;
-  model.geometry = request.room->surface().geometry();
+  const ExportedSurface surface = STRATA_TRY(exported_surface(services, request, progress));
+  model.geometry = surface.geometry;
   model.metres_per_unit = description.metres();
   model.up = description.up;
   model.unlit = request.unlit;
@@ -98,6 +100,7 @@ Result<std::shared_ptr<const TemporaryFile>> export_model(const Services& servic
   }
   progress.begin_stage(kIdsWritten, 1);
   auto file = std::make_shared<TemporaryFile>(folder / (to_string(random_uuid()) + ".model"));
+  file->triangles = model.geometry->triangle_count();
   file->name = description.slug + (is_glb ? ".glb" : ".zip");
   file->media_type = is_glb ? "model/gltf-binary" : "application/zip";
   file->bytes = STRATA_TRY(is_glb ? mesh::write_glb(model, file->path, progress)

@@ -1,8 +1,8 @@
 #include "mesh/surface/detail_levels.h"
 
-#include <meshoptimizer.h>
-
 #include <algorithm>
+
+#include "mesh/surface/simplify.h"
 
 namespace strata::mesh {
 namespace {
@@ -25,32 +25,6 @@ std::vector<std::size_t> level_sizes(std::size_t triangles) {
   return sizes;
 }
 
-// Returns a geometry of the vertices that `indices` use, numbered by first use.
-Geometry compact(const Geometry& source, const std::vector<std::uint32_t>& indices) {
-  constexpr std::uint32_t kNone = 0xffffffffu;
-  Geometry result;
-  result.origin = source.origin;
-  result.indices.reserve(indices.size());
-  std::vector<std::uint32_t> vertex_of(source.vertices.size(), kNone),
-      position_of(source.positions.size(), kNone);
-  for (const std::uint32_t old : indices) {
-    if (vertex_of[old] == kNone) {
-      Vertex vertex = source.vertices[old];
-      std::uint32_t& position = position_of[vertex.position_index];
-      if (position == kNone) {
-        position = static_cast<std::uint32_t>(result.positions.size());
-        result.positions.push_back(source.positions[vertex.position_index]);
-      }
-      vertex.position_index = position;
-      vertex_of[old] = static_cast<std::uint32_t>(result.vertices.size());
-      result.vertices.push_back(vertex);
-    }
-    result.indices.push_back(vertex_of[old]);
-  }
-  find_boxes(result);
-  return result;
-}
-
 }  // namespace
 
 Result<std::vector<Geometry>> make_detail_levels(const Geometry& geometry, Progress& progress) {
@@ -63,14 +37,11 @@ Result<std::vector<Geometry>> make_detail_levels(const Geometry& geometry, Progr
     progress.report(static_cast<double>(levels.size()) / static_cast<double>(sizes.size()),
                     "Making coarser copies");
     const Geometry& finer = levels.empty() ? geometry : levels.back();
-    std::vector<std::uint32_t> indices(finer.indices.size());
-    indices.resize(meshopt_simplify(indices.data(), finer.indices.data(), finer.indices.size(),
-                                    &finer.vertices.front().position.x, finer.vertices.size(),
-                                    sizeof(Vertex), 3 * size, kMaxError, 0, nullptr));
+    const std::vector<std::uint32_t> indices = collapse_edges(finer, size, kMaxError).indices;
     const double share =
         static_cast<double>(indices.size()) / static_cast<double>(finer.indices.size());
     if (indices.empty() || share > kWorthwhile) break;
-    Geometry level = compact(finer, indices);
+    Geometry level = with_triangles(finer, indices);
     if (surface_area(level) < kMinArea * area) break;
     levels.push_back(std::move(level));
   }

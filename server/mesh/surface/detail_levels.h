@@ -12,12 +12,10 @@ namespace strata::mesh {
 constexpr std::size_t kCoarsestLevelTriangles = 100'000;
 
 // Makes coarser copies of a model for moving cameras, beginning with the finest copy. Each copy has
-// about a quarter of the triangles of the next finer one, down to kCoarsestLevelTriangles. Edges
-// are collapsed to one of their ends (quadric error, meshoptimizer). Every vertex is therefore a
-// vertex of the model, with its normal, color and texture coordinate. Vertices at the seams of the
-// atlas stay on the seams. The result is empty if the model needs no coarser copy or cannot become
-// coarser because of its seams. Copies are for display only. An edit uses the depth of the full
-// model. Fails only when cancelled.
+// about a quarter of the triangles of the next finer one, down to kCoarsestLevelTriangles, by
+// `collapse_edges`. The result is empty if the model needs no coarser copy or cannot become coarser
+// because of its seams. Copies are for display only. An edit uses the depth of the full model.
+// Fails only when cancelled.
 Result<std::vector<Geometry>> make_detail_levels(const Geometry& geometry, Progress& progress);
 
 }  // namespace strata::mesh

@@ -70,6 +70,7 @@ Response file_response(std::shared_ptr<const TemporaryFile> file) {
   Response response;
   response.with("Content-Type", file->media_type);
   name_download(response, file->name);
+  if (file->triangles) response.with("Strata-Triangles", std::to_string(*file->triangles));
   response.file = file->path;
   response.held = std::move(file);
   return response;

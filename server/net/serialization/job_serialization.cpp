@@ -21,8 +21,10 @@ nlohmann::json to_json(const jobs::JobStatus& job) {
          : job.kind == jobs::JobKind::changes  ? "changes"
          : job.kind == jobs::JobKind::analysis ? "analysis"
                                                : "report"] = report;
-  if (const auto& file = job.result->file)
+  if (const auto& file = job.result->file) {
     json["file"] = {{"name", file->name}, {"media_type", file->media_type}, {"bytes", file->bytes}};
+    if (file->triangles) json["file"]["triangles"] = *file->triangles;
+  }
   return json;
 }
 

@@ -7,7 +7,7 @@ import numpy
 import pytest
 from support.colored_layers import make_colored_layers
 from support.glb import Glb, pixel_at, read_png, validate
-from support.meshes import bumpy_ball, folded_grid
+from support.meshes import bumpy_ball, folded_grid, ply
 from support.obj import Obj
 from support.pictures import png
 from support.ply import read_ply
@@ -115,10 +115,14 @@ def vertex_lookup(vertices):
     return {tuple(round(each[axis], 3) for axis in "xyz"): each for each in vertices}
 
 
-def in_model(glb):
-    """Returns the positions of the vertices in the world of the sheet: mm, +z up."""
-    places = glb.places() * 1000
+def in_sheet(places):
+    """Returns meters with y up in the world of the sheet: mm, +z up."""
+    places = places * 1000
     return numpy.stack([places[:, 0], -places[:, 2], places[:, 1]], axis=1)
+
+
+def in_model(glb):
+    return in_sheet(glb.places())
 
 
 def by_position(server, glb, query):
@@ -192,6 +196,28 @@ def test_photos_are_below_the_layers(server):
     server.ok("DELETE", M + "/looks/light")
 
 
+def vertex_colors(server, model, query=""):
+    """Returns the positions and colors of the vertices."""
+    vertices = read_ply(server.ok("GET", f"{model}/vertices.ply?colors=layers{query}").body)[0]
+    places = [[each[axis] for axis in "xyz"] for each in vertices]
+    colors = [[each[name] for name in ("red", "green", "blue")] for each in vertices]
+    return numpy.array(places, float), numpy.array(colors, int)
+
+
+def compare_colors(server, places, colors, at_least):
+    """The colors at these places on the sheet are those of the layer `units` at the vertices around
+    them. Leaves out places where these vertices have different colors."""
+    given_places, given_colors = vertex_colors(server, M, "&layers=units")
+    compared, kinds = 0, set()
+    for place, color in zip(places, colors):
+        near = given_colors[numpy.linalg.norm(given_places - place, axis=1) < 4]
+        if (near.max(axis=0) - near.min(axis=0)).max() > 2:
+            continue
+        assert abs(near[0] - color).max() <= 3, (place, near[0], color)
+        compared, kinds = compared + 1, kinds | {tuple(near[0])}
+    assert compared >= at_least and len(kinds) >= 2, (compared, kinds)
+
+
 def test_pixels_between_the_charts_continue_the_colors(server):
     """Linear filters add no other color at the seams of a ball of one color."""
     server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
@@ -262,23 +288,36 @@ def test_an_obj_file_has_the_same_colors_when_imported_again(server):
         server, format="obj", texture_format="png", texture_size=2048, layers=only(server, "units")
     )
     server.import_model(content, "model.zip", name="Colored")
-    query = "vertices.ply?colors=layers"
-    given = read_ply(server.ok("GET", f"{M}/{query}&layers=units").body)[0]
-    found = read_ply(server.ok("GET", f"/models/colored/{query}").body)[0]
-    channels = ("red", "green", "blue")
-    given_places = numpy.array([[each[axis] for axis in "xyz"] for each in given], float)
-    given_colors = numpy.array([[each[name] for name in channels] for each in given], int)
-    places = 1000 * numpy.array([[each[axis] for axis in "xyz"] for each in found], float)
-    places = numpy.stack([places[:, 0], -places[:, 2], places[:, 1]], axis=1)
-    colors = numpy.array([[each[name] for name in channels] for each in found], int)
-    compared, kinds = 0, set()
-    for place, color in zip(places, colors):
-        near = given_colors[numpy.linalg.norm(given_places - place, axis=1) < 4]
-        if (near.max(axis=0) - near.min(axis=0)).max() > 2:
-            continue  # next to the edge of a class
-        assert abs(near[0] - color).max() <= 3, (place, near[0], color)
-        compared, kinds = compared + 1, kinds | {tuple(near[0])}
-    assert compared > 1000 and len(kinds) >= 2, (compared, kinds)
+    found = vertex_colors(server, "/models/colored")
+    compare_colors(server, in_sheet(found[0]), found[1], 1000)
+
+
+def test_a_reduced_mesh_has_the_number_of_triangles_and_the_same_texture(server, tmp_path):
+    model = server.get(M).json()
+    wish = {"texture_format": "png", "texture_size": 2048, "layers": only(server, "units")}
+    full = Glb(export(server, **wish))
+    answer = server.request("POST", M + "/exports", {"max_triangles": 800, **wish})
+    assert answer.status == 200, answer
+    glb = Glb(answer.body)
+    triangles = glb.triangles()
+    assert 760 <= len(triangles) <= 800
+    assert int(answer.headers["Strata-Triangles"]) == len(triangles)
+    assert (read_png(glb.color_image()) == read_png(full.color_image())).all()
+    check_valid(answer.body, tmp_path)
+    assert area_of(glb.places(), triangles) == pytest.approx(model["area_m2"], rel=1e-3)
+    places, uvs = in_model(glb)[triangles].mean(axis=1), glb.attribute("TEXCOORD_0")
+    image = read_png(glb.color_image())
+    colors = [pixel_at(image, uv)[:3].astype(int) for uv in uvs[triangles].mean(axis=1)]
+    compare_colors(server, places, colors, 400)
+    obj = Obj(export(server, format="obj", max_triangles=800, **wish))
+    assert len(obj.corners) == len(triangles)
+
+
+def test_a_large_number_of_triangles_changes_nothing(server):
+    wish = {"texture_size": 512, "layers": only(server)}
+    answer = server.request("POST", M + "/exports", {"max_triangles": 10**6, **wish})
+    assert answer.body == export(server, **wish)
+    assert int(answer.headers["Strata-Triangles"]) == server.get(M).json()["triangles"]
 
 
 def test_large_coordinates_keep_their_precision(server):
@@ -399,11 +438,29 @@ def test_a_job_makes_the_file_and_can_be_cancelled(server):
     assert done["file"]["media_type"] == "model/gltf-binary"
     file = server.ok("GET", f"/jobs/{job}/file")
     assert len(file.body) == done["file"]["bytes"]
-    assert Glb(file.body).primitive["extensions"]
+    glb = Glb(file.body)
+    assert glb.primitive["extensions"]
+    assert done["file"]["triangles"] == len(glb.triangles())
     job = server.request("POST", M + "/exports", {"texture_size": 8192}, headers=prefer)
     job = job.json()["id"]
     server.ok("DELETE", f"/jobs/{job}")
     assert server.wait_for_job(job)["state"] == "cancelled"
+
+
+def test_separate_pieces_are_not_reduced_to_nothing(server):
+    """60 cubes, whose corners are corners of charts."""
+    corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1)]
+    faces += [(2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+    cubes = ply(
+        [(3 * i + x, y, z) for i in range(60) for x, y, z in corners],
+        [tuple(8 * i + each for each in face) for i in range(60) for face in faces],
+    )
+    server.import_model(cubes, "cubes.ply", name="Cubes", unit="mm")
+    wish = {"max_triangles": 100, "texture_size": 512}
+    answer = server.request("POST", "/models/cubes/exports", wish)
+    assert (answer.status, answer.json()["field"]) == (422, "max_triangles"), answer
+    assert "720" in answer.json()["detail"], answer
 
 
 def test_wrong_requests_are_refused(server):
@@ -415,6 +472,7 @@ def test_wrong_requests_are_refused(server):
         ({"texture_size": 100}, 422, "texture_size"),
         ({"texture_format": "webp"}, 422, "texture_format"),
         ({"format": "fbx"}, 422, "format"),
+        ({"max_triangles": 99}, 422, "max_triangles"),
         ({"format": "obj", "features": "units"}, 422, "features"),
         ({"at": 99999}, 422, "at"),
     ):

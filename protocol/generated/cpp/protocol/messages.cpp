@@ -2882,6 +2882,7 @@ void read(const nlohmann::json& json, JobFile& value) {
   read_member(json, "name", value.name);
   read_member(json, "media_type", value.media_type);
   read_member(json, "bytes", value.bytes);
+  read_optional_member(json, "triangles", value.triangles);
 }
 
 nlohmann::json to_json(const JobFile& value) {
@@ -2889,6 +2890,7 @@ nlohmann::json to_json(const JobFile& value) {
   write_member(json, "name", value.name);
   write_member(json, "media_type", value.media_type);
   write_member(json, "bytes", value.bytes);
+  write_optional_member(json, "triangles", value.triangles);
   return json;
 }
 
@@ -5007,6 +5009,7 @@ void read(const nlohmann::json& json, ModelExportRequest& value) {
   read_optional_member(json, "at", value.at);
   read_optional_member(json, "texture_size", value.texture_size);
   read_optional_member(json, "texture_format", value.texture_format);
+  read_optional_member(json, "max_triangles", value.max_triangles);
   read_optional_member(json, "unlit", value.unlit);
 }
 
@@ -5019,6 +5022,7 @@ nlohmann::json to_json(const ModelExportRequest& value) {
   write_optional_member(json, "at", value.at);
   write_optional_member(json, "texture_size", value.texture_size);
   write_member(json, "texture_format", value.texture_format);
+  write_optional_member(json, "max_triangles", value.max_triangles);
   write_member(json, "unlit", value.unlit);
   return json;
 }

@@ -2023,6 +2023,7 @@ struct JobFile {
   std::string name;
   std::string media_type;
   std::int64_t bytes = 0;
+  std::optional<std::int64_t> triangles;  // Number of triangles of a 3D model.
   bool operator==(const JobFile&) const = default;
 };
 void read(const nlohmann::json& json, JobFile& value);
@@ -4047,6 +4048,10 @@ struct ModelExportRequest {
   std::optional<int> texture_size;
   // `png` keeps the exact colors, but the file is larger.
   ModelExportRequestTextureFormat texture_format = ModelExportRequestTextureFormat::jpeg;
+  // The file has at most this number of triangles. The surface is simplified, and its texture stays
+  // the same. Usually, the file has nearly this number; `triangles` of the job's file and the
+  // header Strata-Triangles contain the exact number. Default: all triangles.
+  std::optional<std::int64_t> max_triangles;
   // Whether programs show the colors of the texture without light (KHR_materials_unlit; in OBJ, the
   // illumination model 0). Colors are then the same as in the legend, but the relief of the surface
   // is not visible.

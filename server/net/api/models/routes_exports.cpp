@@ -49,6 +49,7 @@ Result<app::ModelExport> read_export(const RouteContext& context, const Request&
   read.texture_format = body.texture_format == protocol::ModelExportRequestTextureFormat::png
                             ? PictureFormat::png
                             : PictureFormat::jpeg;
+  if (body.max_triangles) read.max_triangles = static_cast<std::size_t>(*body.max_triangles);
   read.unlit = body.unlit;
   read.language = STRATA_TRY(requested_language(request));
   return read;
