@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/cancellable.h"
 #include "app/layers/computed_layers.h"
 #include "app/layers/formula_layers.h"
 #include "core/overloaded.h"
-#include "domain/people/question.h"
 #include "expression/expression_parser.h"
 #include "room/edits.h"
 #include "room/layers.h"
@@ -93,24 +93,7 @@ Result<AnalysisResult> run(const Services& services, const std::shared_ptr<room:
   return result;
 }
 
-// The computation of statistics checks a question and not a Progress.
-Result<query::Statistics> statistics(room::Room& room, const std::string& layer,
-                                     const room::Selection& selection,
-                                     const room::StatisticsOptions& options, const Author& author,
-                                     Progress& progress) {
-  const auto question = std::make_shared<Question>(author.user, QuestionLimits{}, nullptr);
-  const Progress::WhenCancelled when_cancelled(
-      progress, [question] { question->end(cancelled_problem().value()); });
-  const Question::Scope scope(question);
-  try {
-    return room.queries().statistics(layer, selection, options);
-  } catch (const QuestionEnded& ended) {
-    return tl::unexpected(ended.problem());
-  }
-}
-
-Result<AnalysisResult> run(room::Room& room, const Measure& step, const Author& author,
-                           Progress& progress) {
+Result<AnalysisResult> run(room::Room& room, const Measure& step, Progress& progress) {
   AnalysisResult result;
   result.layer = STRATA_TRY(room.layers().find(step.layer));
   room::Selection selection;
@@ -124,8 +107,9 @@ Result<AnalysisResult> run(room::Room& room, const Measure& step, const Author& 
   // A state that others can read again, even if edits follow during the computation.
   selection.at = result.sequence = room.edits().durable_sequence();
   progress.report(0, "Measuring the layer");
-  result.statistics =
-      STRATA_TRY(statistics(room, result.layer.slug, selection, step.options, author, progress));
+  result.statistics = STRATA_TRY(cancellable(progress, [&] {
+    return room.queries().statistics(result.layer.slug, selection, step.options);
+  }));
   return result;
 }
 
@@ -175,7 +159,7 @@ Result<std::vector<AnalysisResult>> run_analysis(const Services& services,
                                 {analysis.name, number, count, progress.job()}, author, layers,
                                 progress);
                    },
-                   [&](const Measure& measure) { return run(*room, measure, author, progress); }},
+                   [&](const Measure& measure) { return run(*room, measure, progress); }},
         step.work);
     if (!result && result.error().code == ErrorCode::cancelled)
       return tl::unexpected(std::move(result.error()));
