@@ -108,6 +108,9 @@ class Queries {
   virtual Result<SelectedArea> select(const Selection& selection,
                                       const std::vector<std::string>& layers,
                                       StatisticsOptions options = {}) = 0;
+  // Returns the selected texels of the resolution whose texels `select` counts, without other
+  // layers. The selection must not be the whole surface.
+  virtual Result<SelectedArea::Texels> selected_texels(const Selection& selection) = 0;
   // Returns the surface along a line, with the values of `layers`.
   virtual Result<query::Profile> profile(const ProfileLine& line,
                                          const std::vector<std::string>& layers, At at = {}) = 0;

@@ -116,6 +116,11 @@ class FilteredQueries final : public Queries {
     const Selection seen = STRATA_TRY(seen_by(selection));
     return queries_.select(seen, layers, options);
   }
+  Result<SelectedArea::Texels> selected_texels(const Selection& selection) override {
+    if (selection.changed) STRATA_TRY(layers_.check(selection.changed->layers));
+    const Selection seen = STRATA_TRY(seen_by(selection));
+    return queries_.selected_texels(seen);
+  }
   Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,
                                  At at) override {
     STRATA_TRY(layers_.check(layers));

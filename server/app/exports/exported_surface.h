@@ -14,8 +14,8 @@ struct ExportedSurface {
   MemoryLedger::Share memory;  // for a geometry that is not the one of the room
 };
 
-// Returns the surface with the number of triangles that the request requires. Fails like
-// `export_model`.
+// Returns the part of the surface, with the number of triangles that the request requires. Fails
+// like `export_model`.
 Result<ExportedSurface> exported_surface(const Services& services, const ModelExport& request,
                                          Progress& progress);
 

@@ -203,16 +203,22 @@ Result<query::Statistics> OpenRoom::QueriesPart::statistics(const std::string& l
   return count(views.front(), *map, selected ? &*selected : nullptr, !selection.at, options);
 }
 
+int OpenRoom::QueriesPart::resolution_read_by(const Selection& selection) const {
+  int resolution = 0;
+  for (const auto& slug : layers_read_by(selection))
+    if (const auto found = room_.state(slug))
+      resolution = std::max(resolution, found->layer.resolution);
+  return resolution;
+}
+
 Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
                                                    const std::vector<std::string>& layers,
                                                    StatisticsOptions options) {
   room_.touch();
   const auto views = STRATA_TRY(room_.layer_views(layers, selection.at));
   SelectedArea area;
+  area.resolution = resolution_read_by(selection);
   for (const auto& view : views) area.resolution = std::max(area.resolution, view.layer.resolution);
-  for (const auto& slug : layers_read_by(selection))
-    if (const auto found = room_.state(slug))
-      area.resolution = std::max(area.resolution, found->layer.resolution);
   std::optional<int> of_painted;
   if (options.painted) {
     of_painted = STRATA_TRY(room_.state(*options.painted)).layer.resolution;
@@ -260,6 +266,15 @@ Result<SelectedArea> OpenRoom::QueriesPart::select(const Selection& selection,
     if (auto& texels = of_resolution.at(*of_painted).texels)
       area.painted = SelectedArea::Texels{*of_painted, std::move(*texels)};
   return area;
+}
+
+Result<SelectedArea::Texels> OpenRoom::QueriesPart::selected_texels(const Selection& selection) {
+  room_.touch();
+  int resolution = resolution_read_by(selection);
+  if (resolution == 0) resolution = room_.model().default_resolution;
+  const auto map = STRATA_TRY(room_.surface_map(resolution));
+  auto texels = STRATA_TRY(select_texels(selection, *map));
+  return SelectedArea::Texels{resolution, std::move(texels.value())};
 }
 
 Result<query::Profile> OpenRoom::QueriesPart::profile(const ProfileLine& line,

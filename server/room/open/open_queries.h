@@ -29,6 +29,7 @@ class OpenRoom::QueriesPart final : public Queries {
                                        StatisticsOptions options) override;
   Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
                               StatisticsOptions options) override;
+  Result<SelectedArea::Texels> selected_texels(const Selection& selection) override;
   Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,
                                  At at) override;
   Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
@@ -44,6 +45,8 @@ class OpenRoom::QueriesPart final : public Queries {
   Result<TileMirror::Snapshot> tiles(const std::string& layer, At at) override;
 
  private:
+  // Returns the resolution of the finest layer that the selection reads, or 0.
+  int resolution_read_by(const Selection& selection) const;
   struct LayerGraph {
     query::LayerView view;
     std::shared_ptr<const mesh::SurfaceMap> map;

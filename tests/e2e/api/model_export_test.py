@@ -313,6 +313,71 @@ def test_a_reduced_mesh_has_the_number_of_triangles_and_the_same_texture(server,
     assert len(obj.corners) == len(triangles)
 
 
+AROUND = {"at": {"point": [50, 50, 0]}, "radius_mm": 20}
+
+
+def farthest_and_nearest(places, triangles):
+    """Returns the distances of the corners of the triangles from the middle of AROUND."""
+    distances = numpy.linalg.norm(places - AROUND["at"]["point"], axis=1)[triangles]
+    return distances.max(axis=1), distances.min(axis=1)
+
+
+def test_a_part_of_the_surface_has_whole_triangles_and_the_same_texture(server, tmp_path):
+    wish = {"texture_format": "png", "texture_size": 512}
+    full, content = Glb(export(server, **wish)), export(server, within=AROUND, **wish)
+    check_valid(content, tmp_path)
+    part = Glb(content)
+    assert (read_png(part.color_image()) == read_png(full.color_image())).all()
+    assert part.json["nodes"][0]["matrix"] == full.json["nodes"][0]["matrix"]
+    # An edge of a triangle has 2.5 mm, and a texel of the part less than 0.1 mm.
+    _, nearest = farthest_and_nearest(in_model(part), part.triangles())
+    assert nearest.max() < 20
+    farthest, nearest = farthest_and_nearest(in_model(full), full.triangles())
+    inside, touched = (farthest < 19.9).sum(), (nearest < 20).sum()
+    assert 100 < inside < len(part.triangles()) <= touched, (inside, touched)
+    # The positions of the corners, without those that only other triangles use.
+    given = {tuple(each) for each in full.attribute("POSITION").tolist()}
+    used = {tuple(each) for each in part.attribute("POSITION").tolist()}
+    assert used < given
+    assert len(numpy.unique(part.triangles())) == len(part.attribute("POSITION"))
+    obj = Obj(export(server, within=AROUND, format="obj", **wish))
+    assert len(obj.corners) == len(part.triangles())
+
+
+def test_a_part_can_be_a_condition_or_a_saved_selection(server):
+    wish = {"texture_size": 512}
+    selection = {"name": "Cracks", "audience": "everyone", "within": {"where": "units == 1"}}
+    server.ok("POST", M + "/selections", selection)
+    direct = export(server, within=selection["within"], **wish)
+    assert export(server, within={"selection": "cracks"}, **wish) == direct
+    some = len(Glb(direct).triangles())
+    assert 300 < some < server.get(M).json()["triangles"] / 2
+    reduced = Glb(export(server, within={"selection": "cracks"}, max_triangles=200, **wish))
+    assert len(reduced.triangles()) <= 200
+    features = Glb(export(server, within={"selection": "cracks"}, features="units", **wish))
+    assert features.properties()["name"] == ["Crack", "Blister"]
+
+
+def test_a_part_shows_an_earlier_state(server):
+    sequence = int(server.get(M + "/layers/units/statistics").headers["Strata-Sequence"])
+    within = {"where": "units == 1"}
+    before = export(server, within=within, at=sequence, texture_size=512)
+    dab(server, f"{M}/layers/units", 1, 90, 90, 8)
+    assert export(server, within=within, at=sequence, texture_size=512) == before
+    now = export(server, within=within, texture_size=512)
+    assert len(Glb(now).triangles()) > len(Glb(before).triangles())
+
+
+def test_a_job_reports_an_empty_part(server):
+    wish = {"within": {"where": "units == 1 and units == 2"}, "texture_size": 512}
+    answer = server.request("POST", M + "/exports", wish)
+    assert (answer.status, answer.json()["field"]) == (422, "within"), answer
+    prefer = {"Prefer": "respond-async"}
+    job = server.request("POST", M + "/exports", wish, headers=prefer).json()["id"]
+    done = server.wait_for_job(job)
+    assert (done["state"], done["problem"]["field"]) == ("failed", "within"), done
+
+
 def test_a_large_number_of_triangles_changes_nothing(server):
     wish = {"texture_size": 512, "layers": only(server)}
     answer = server.request("POST", M + "/exports", {"max_triangles": 10**6, **wish})
@@ -473,6 +538,9 @@ def test_wrong_requests_are_refused(server):
         ({"texture_format": "webp"}, 422, "texture_format"),
         ({"format": "fbx"}, 422, "format"),
         ({"max_triangles": 99}, 422, "max_triangles"),
+        ({"within": {"selection": "nothing"}}, 404, "within.selection"),
+        ({"within": {"where": "nothing > 1"}}, 422, "within.where"),
+        ({"within": {"where": "units >"}}, 422, "within.where"),
         ({"format": "obj", "features": "units"}, 422, "features"),
         ({"at": 99999}, 422, "at"),
     ):

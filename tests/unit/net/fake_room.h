@@ -141,6 +141,9 @@ class FakeQueries final : public room::Queries {
                                     room::StatisticsOptions) override {
     return room::SelectedArea{};
   }
+  Result<room::SelectedArea::Texels> selected_texels(const room::Selection&) override {
+    return room::SelectedArea::Texels{};
+  }
   Result<query::Profile> profile(const room::ProfileLine&, const std::vector<std::string>&,
                                  room::At) override {
     return query::Profile{};

@@ -4055,6 +4055,8 @@ export interface ModelExportRequest {
   texture_size?: number;
   /** `png` keeps the exact colors, but the file is larger. Default: "jpeg". */
   texture_format?: "jpeg" | "png";
+  /** The file has only the triangles with at least one texel in this part of the surface. Triangles at the border of the part stay whole. Default: the whole surface. */
+  within?: Within;
   /** The file has at most this number of triangles. The surface is simplified, and its texture stays the same. Usually, the file has nearly this number; `triangles` of the job's file and the header Strata-Triangles contain the exact number. Default: all triangles. */
   max_triangles?: number;
   /** Whether programs show the colors of the texture without light (KHR_materials_unlit; in OBJ, the illumination model 0). Colors are then the same as in the legend, but the relief of the surface is not visible. Default: false. */

@@ -5009,6 +5009,7 @@ void read(const nlohmann::json& json, ModelExportRequest& value) {
   read_optional_member(json, "at", value.at);
   read_optional_member(json, "texture_size", value.texture_size);
   read_optional_member(json, "texture_format", value.texture_format);
+  read_optional_member(json, "within", value.within);
   read_optional_member(json, "max_triangles", value.max_triangles);
   read_optional_member(json, "unlit", value.unlit);
 }
@@ -5022,9 +5023,15 @@ nlohmann::json to_json(const ModelExportRequest& value) {
   write_optional_member(json, "at", value.at);
   write_optional_member(json, "texture_size", value.texture_size);
   write_member(json, "texture_format", value.texture_format);
+  write_optional_member(json, "within", value.within);
   write_optional_member(json, "max_triangles", value.max_triangles);
   write_member(json, "unlit", value.unlit);
   return json;
+}
+
+Result<void> check(const ModelExportRequest& value, const std::string& field) {
+  if (auto ok = value.within ? check(*value.within, join_field(field, "within")) : Result<void>{}; !ok) return ok;
+  return {};
 }
 
 void read(const nlohmann::json& json, ColumnClass& value) {

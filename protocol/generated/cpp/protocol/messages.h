@@ -4048,6 +4048,9 @@ struct ModelExportRequest {
   std::optional<int> texture_size;
   // `png` keeps the exact colors, but the file is larger.
   ModelExportRequestTextureFormat texture_format = ModelExportRequestTextureFormat::jpeg;
+  // The file has only the triangles with at least one texel in this part of the surface. Triangles
+  // at the border of the part stay whole. Default: the whole surface.
+  std::optional<Within> within;
   // The file has at most this number of triangles. The surface is simplified, and its texture stays
   // the same. Usually, the file has nearly this number; `triangles` of the job's file and the
   // header Strata-Triangles contain the exact number. Default: all triangles.
@@ -4060,6 +4063,7 @@ struct ModelExportRequest {
 };
 void read(const nlohmann::json& json, ModelExportRequest& value);
 nlohmann::json to_json(const ModelExportRequest& value);
+Result<void> check(const ModelExportRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<ModelExportRequest> = Schema::ModelExportRequest;
 

@@ -4,6 +4,7 @@
 #include "app/exports/model_export.h"
 #include "domain/scene/model.h"
 #include "net/api/addressed.h"
+#include "net/api/layers/region_reader.h"
 #include "net/api/models/made_file.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
@@ -14,6 +15,8 @@
 #include "room/layers.h"
 #include "room/room.h"
 #include "room/view_settings.h"
+#include "store/content/named_parts.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -44,6 +47,13 @@ Result<app::ModelExport> read_export(const RouteContext& context, const Request&
     read.features = std::move(*layer);
   }
   read.at = STRATA_TRY(find_sequence(context, *read.room, body.at));
+  if (body.within) {
+    protocol::Within within = *body.within;
+    RegionReader reader(*read.room, context.store.selections(), request.user());
+    read.within.emplace();
+    read.within->within = STRATA_TRY(reader.read(within));
+    read.within->at = read.at;
+  }
   if (body.texture_size)
     read.texture_size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(*body.texture_size)));
   read.texture_format = body.texture_format == protocol::ModelExportRequestTextureFormat::png
