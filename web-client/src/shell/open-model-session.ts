@@ -53,7 +53,7 @@ import { notices } from "../ui/notices";
 import { Painting } from "../features/painting/painting";
 import type { EdgeSnapper } from "../features/painting/edge-snapper";
 import type { Photographs } from "../features/photographs/photographs";
-import type { SavedSelections } from "../features/painting/saved-selections";
+import type { SavedSelections } from "../session/saved-selections";
 import type { Selection } from "../features/painting/selection";
 import type { SharpFrame, sharpFrames, ShownFrame } from "../features/painting/sharp-frame";
 import type { Strokes } from "../features/painting/strokes";

@@ -5,11 +5,12 @@ import { html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import type { Within } from "../../core/protocol.gen";
 import type { ModelSession } from "../../session/model-session";
+import { savedSelectionsOf } from "../../session/saved-selections-of";
 import "../../ui/naming-dialog";
 import type { Called } from "../../ui/naming-dialog";
 import { notices } from "../../ui/notices";
 import { texts } from "../../texts";
-import { savedSelectionsOf, selectionOf } from "./selection-of";
+import { selectionOf } from "./selection-of";
 
 const words = texts.saved_selections;
 

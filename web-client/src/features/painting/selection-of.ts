@@ -1,9 +1,8 @@
-// The selection, its strokes and the saved selections of an open model.
+// The selection and its strokes of an open model.
 
 import type { ModelSession } from "../../session/model-session";
 import { texts } from "../../texts";
 import { notices } from "../../ui/notices";
-import { SavedSelections } from "./saved-selections";
 import { Selection } from "./selection";
 import { isOutline, kMostParts, stepsOf } from "./selection-steps";
 import type { SharpFrame } from "./sharp-frame";
@@ -12,14 +11,6 @@ import { Strokes } from "./strokes";
 /** Returns the selection of an open model. */
 export const selectionOf = (session: ModelSession): Selection =>
   (session.selection ??= makeSelection(session));
-
-/** Returns the saved selections of an open model. */
-export const savedSelectionsOf = (session: ModelSession): SavedSelections =>
-  (session.savedSelections ??= new SavedSelections(session.api, session.modelId, {
-    user: () => session.user,
-    canCurate: () => session.canCurate,
-    changed: () => session.painting.changed(),
-  }));
 
 const kSoonMs = 40; // The browser has drawn the page by then.
 

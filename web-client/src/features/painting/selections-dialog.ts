@@ -8,6 +8,7 @@ import type { SavedSelection } from "../../core/protocol.gen";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
 import type { SelectionRequest } from "../../session/requests";
+import { savedSelectionsOf } from "../../session/saved-selections-of";
 import { ask, type StrataDialog } from "../../ui/dialog";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
@@ -17,7 +18,7 @@ import { notices } from "../../ui/notices";
 import { listRowStyles } from "../../ui/panel/panel-styles";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
-import { savedSelectionsOf, selectionOf } from "./selection-of";
+import { selectionOf } from "./selection-of";
 
 const words = texts.saved_selections;
 const kAtOnce = 50;

@@ -1,14 +1,14 @@
 // The saved selections of the open model, in the server's list.
 
-import { type Api, ifVersion } from "../../net/api";
-import { ApiError } from "../../net/api-error";
+import { type Api, ifVersion } from "../net/api";
+import { ApiError } from "../net/api-error";
 import type {
   SavedSelection,
   SavedSelectionCreate,
   SavedSelectionPatch,
   SelectionEvent,
-} from "../../core/protocol.gen";
-import { FollowedItems } from "../../net/followed-items";
+} from "../core/protocol.gen";
+import { FollowedItems } from "../net/followed-items";
 
 export interface SavedSelectionsHost {
   user(): string;

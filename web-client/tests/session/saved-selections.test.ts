@@ -1,8 +1,8 @@
 import { beforeEach, describe, expect, it } from "vitest";
-import type { SavedSelection } from "../../../src/core/protocol.gen";
-import { SavedSelections } from "../../../src/features/painting/saved-selections";
-import { ApiError } from "../../../src/net/api-error";
-import { fakeApi } from "../../fake-api";
+import type { SavedSelection } from "../../src/core/protocol.gen";
+import { SavedSelections } from "../../src/session/saved-selections";
+import { ApiError } from "../../src/net/api-error";
+import { fakeApi } from "../fake-api";
 
 const made = (id: number, more: Partial<SavedSelection> = {}): SavedSelection => ({
   id,
