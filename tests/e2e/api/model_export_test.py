@@ -346,7 +346,7 @@ def test_a_part_of_the_surface_has_whole_triangles_and_the_same_texture(server, 
 
 def test_a_part_can_be_a_condition_or_a_saved_selection(server):
     wish = {"texture_size": 512}
-    selection = {"name": "Cracks", "audience": "everyone", "within": {"where": "units == 1"}}
+    selection = {"name": "Cracks", "audience": "everyone", "within": {"where": "units = 1"}}
     server.ok("POST", M + "/selections", selection)
     direct = export(server, within=selection["within"], **wish)
     assert export(server, within={"selection": "cracks"}, **wish) == direct
@@ -360,7 +360,7 @@ def test_a_part_can_be_a_condition_or_a_saved_selection(server):
 
 def test_a_part_shows_an_earlier_state(server):
     sequence = int(server.get(M + "/layers/units/statistics").headers["Strata-Sequence"])
-    within = {"where": "units == 1"}
+    within = {"where": "units = 1"}
     before = export(server, within=within, at=sequence, texture_size=512)
     dab(server, f"{M}/layers/units", 1, 90, 90, 8)
     assert export(server, within=within, at=sequence, texture_size=512) == before
@@ -369,7 +369,7 @@ def test_a_part_shows_an_earlier_state(server):
 
 
 def test_a_job_reports_an_empty_part(server):
-    wish = {"within": {"where": "units == 1 and units == 2"}, "texture_size": 512}
+    wish = {"within": {"where": "units = 1 and units = 2"}, "texture_size": 512}
     answer = server.request("POST", M + "/exports", wish)
     assert (answer.status, answer.json()["field"]) == (422, "within"), answer
     prefer = {"Prefer": "respond-async"}

@@ -3,6 +3,7 @@
 import { css, html, nothing } from "lit";
 import type { LitElement, ReactiveController, TemplateResult } from "lit";
 import { ApiError } from "../net/api-error";
+import type { JobFile } from "../core/protocol.gen";
 import type { ProblemBody } from "../core/types";
 import { styled } from "../ui/styled";
 import { MovedFocus } from "../ui/moved-focus";
@@ -19,7 +20,7 @@ export interface FileFooter {
   actions?: TemplateResult;
   /** A text below the problem or the saved file. */
   status?: TemplateResult | null;
-  saved(file: string): string;
+  saved(file: JobFile): string;
   /** A problem that belongs to no field, or an empty text. */
   problem: string;
 }
@@ -53,7 +54,7 @@ export class AwaitedFile implements ReactiveController {
   }
 
   hostConnected(): void {
-    this._host.session.files.saved = "";
+    this._host.session.files.saved = null;
   }
 
   hostDisconnected(): void {

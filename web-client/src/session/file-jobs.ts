@@ -4,6 +4,7 @@
 
 import type { Api } from "../net/api";
 import { ApiError } from "../net/api-error";
+import type { JobFile } from "../core/protocol.gen";
 import type { Job } from "../core/types";
 import { notices } from "../ui/notices";
 import { saveBlob } from "../ui/save-from";
@@ -19,8 +20,8 @@ export class FileJobs {
    * immediately. Notices offer the files of other jobs.
    */
   awaited: number | null = null;
-  /** The name of the last file that was saved for the open dialog. */
-  saved = "";
+  /** The last file that was saved for the open dialog. */
+  saved: JobFile | null = null;
   private _preview: number | null = null; // the key of the last preview
 
   constructor(
@@ -33,7 +34,7 @@ export class FileJobs {
    * title of the notice that offers the file. Throws an ApiError if the server refuses the request.
    */
   async start(name: string, ready: string, ask: () => Promise<Job>): Promise<number> {
-    this.saved = "";
+    this.saved = null;
     const job = await ask();
     this.awaited = this._jobs.watch(name, job, (last, key) => this.done(key, ready, last));
     return this.awaited;
@@ -44,7 +45,7 @@ export class FileJobs {
    * dialog has stopped waiting for the job. Throws an ApiError if the server refuses the request.
    */
   async preview(name: string, ask: () => Promise<Job>, show: ShowFile): Promise<number> {
-    this.saved = "";
+    this.saved = null;
     const job = await ask();
     this.awaited = this._jobs.watch(name, job, (last, key) => void this.show(key, last, show));
     this._preview = this.awaited;
@@ -81,7 +82,7 @@ export class FileJobs {
         await this._api.blob("GET /jobs/{job}/file", { path: { job: job.id } }),
         job.file.name,
       );
-      this.saved = job.file.name;
+      this.saved = job.file;
       this._jobs.dismiss(key);
     } catch (error) {
       notices.error(error);

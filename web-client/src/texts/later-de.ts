@@ -69,13 +69,29 @@ export const laterTexts = {
     visible: "Sichtbare Ebenen auswählen",
   },
   export_dialog: {
-    lead: "Erstellt eine GLB-Datei (glTF 2.0) für 3D-Betrachter und Programme wie Blender und Cesium. Längen sind in Metern.",
+    lead: "Erstellt eine Datei für 3D-Betrachter und Programme wie Blender und Cesium. Längen sind in Metern.",
+    file: "Dateiformat",
+    files: { glb: "GLB", obj: "OBJ" },
+    file_hints: {
+      glb: "Für Betrachter und Webseiten (glTF 2.0)",
+      obj: "Für CAD-Programme: ein Zip mit Material und Textur, in Weltkoordinaten",
+    },
+    part: "Teil der Oberfläche",
+    whole: "Ganzes Modell",
+    part_hint:
+      "Um nur einen Teil zu exportieren, speichern Sie zuerst eine Auswahl. Dreiecke an ihrem Rand bleiben ganz.",
+    triangles: "Dreiecke",
+    all_triangles: (count) => `Alle (${count})`,
+    all_of_part: "Alle Dreiecke des Teils",
+    at_most: (count) => `Höchstens ${count}`,
+    triangles_hint: "Weniger Dreiecke ergeben eine kleinere Datei. Die Textur bleibt gleich.",
     layers: "Ebenen in der Textur",
     layers_hint:
       "Die Textur zeigt den Scan, die Oberflächenbilder, die Sie sehen, und diese Ebenen mit ihren Farben und ihrer Deckkraft.",
     features: "Features mit Eigenschaften",
     features_hint:
       "Die Datensätze oder Klassen dieser Ebene, mit Namen, Flächen und Spalten. Programme, die EXT_mesh_features unterstützen, zeigen sie.",
+    features_only_in_glb: "OBJ-Dateien können keine Features enthalten.",
     no_features: "Keine",
     size: "Größe der Textur",
     size_hint: "„Automatisch“ zeigt die Ebenen in voller Auflösung, bis 4096 × 4096 Pixel.",
@@ -90,7 +106,7 @@ export const laterTexts = {
     making: "Datei wird erstellt",
     cancel: "Export abbrechen",
     job: (name) => `3D-Modell: ${name}`,
-    saved: (file) => `Gespeichert als ${file}.`,
+    saved: (file, triangles) => `Gespeichert als ${file} (${triangles}).`,
     ready: "Das 3D-Modell ist fertig",
   },
   gis_dialog: {

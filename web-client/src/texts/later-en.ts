@@ -67,13 +67,28 @@ export const laterTexts = {
     visible: "Select the visible layers",
   },
   export_dialog: {
-    lead: "Creates a GLB file (glTF 2.0) for 3D viewers and for programs such as Blender and Cesium. Lengths are in meters.",
+    lead: "Creates a file for 3D viewers and for programs such as Blender and Cesium. Lengths are in meters.",
+    file: "File format",
+    files: { glb: "GLB", obj: "OBJ" },
+    file_hints: {
+      glb: "For viewers and websites (glTF 2.0)",
+      obj: "For CAD programs: a zip with material and texture, in world coordinates",
+    },
+    part: "Part of the surface",
+    whole: "Whole model",
+    part_hint: "To export only a part, save a selection first. Triangles at its border stay whole.",
+    triangles: "Triangles",
+    all_triangles: (count: string) => `All (${count})`,
+    all_of_part: "All triangles of the part",
+    at_most: (count: string) => `At most ${count}`,
+    triangles_hint: "Fewer triangles make a smaller file. The texture stays the same.",
     layers: "Layers in the texture",
     layers_hint:
       "The texture shows the scan, the surface images that you see, and these layers with their colors and opacities.",
     features: "Features with properties",
     features_hint:
       "The records or classes of this layer, with their names, areas and columns. Programs that support EXT_mesh_features show them.",
+    features_only_in_glb: "OBJ files cannot contain features.",
     no_features: "None",
     size: "Texture size",
     size_hint: "“Automatic” shows the layers at full resolution, up to 4096 × 4096 pixels.",
@@ -88,7 +103,7 @@ export const laterTexts = {
     making: "Creating the file",
     cancel: "Cancel export",
     job: (name: string) => `3D model: ${name}`,
-    saved: (file: string) => `Saved as ${file}.`,
+    saved: (file: string, triangles: string) => `Saved as ${file} (${triangles}).`,
     ready: "The 3D model is ready",
   },
   gis_dialog: {

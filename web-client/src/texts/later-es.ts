@@ -69,13 +69,29 @@ export const laterTexts = {
     visible: "Seleccionar las capas visibles",
   },
   export_dialog: {
-    lead: "Crea un archivo GLB (glTF 2.0) para visores 3D y programas como Blender y Cesium. Las longitudes están en metros.",
+    lead: "Crea un archivo para visores 3D y programas como Blender y Cesium. Las longitudes están en metros.",
+    file: "Formato de archivo",
+    files: { glb: "GLB", obj: "OBJ" },
+    file_hints: {
+      glb: "Para visores y sitios web (glTF 2.0)",
+      obj: "Para programas CAD: un zip con material y textura, en coordenadas del mundo",
+    },
+    part: "Parte de la superficie",
+    whole: "Modelo completo",
+    part_hint:
+      "Para exportar solo una parte, guarde antes una selección. Los triángulos de su borde quedan enteros.",
+    triangles: "Triángulos",
+    all_triangles: (count) => `Todos (${count})`,
+    all_of_part: "Todos los triángulos de la parte",
+    at_most: (count) => `Como máximo ${count}`,
+    triangles_hint: "Menos triángulos dan un archivo más pequeño. La textura no cambia.",
     layers: "Capas en la textura",
     layers_hint:
       "La textura muestra el escaneo, las imágenes de la superficie que usted ve y estas capas con sus colores y opacidades.",
     features: "Elementos con propiedades",
     features_hint:
       "Los registros o clases de esta capa, con sus nombres, áreas y columnas. Los muestran los programas compatibles con EXT_mesh_features.",
+    features_only_in_glb: "Los archivos OBJ no pueden contener elementos.",
     no_features: "Ninguno",
     size: "Tamaño de la textura",
     size_hint:
@@ -91,7 +107,7 @@ export const laterTexts = {
     making: "Creando el archivo",
     cancel: "Cancelar exportación",
     job: (name) => `Modelo 3D: ${name}`,
-    saved: (file) => `Guardado como ${file}.`,
+    saved: (file, triangles) => `Guardado como ${file} (${triangles}).`,
     ready: "El modelo 3D está listo",
   },
   gis_dialog: {

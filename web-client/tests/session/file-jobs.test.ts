@@ -57,7 +57,7 @@ describe("A preview", () => {
     await vi.advanceTimersByTimeAsync(1000);
     expect(jobs.entries).toMatchObject([{ name: "Preview: Pot", job: { state: "running" } }]);
     await end(job("done", { file }));
-    expect([shown, jobs.entries, files.saved, told]).toEqual([["pot-report.pdf"], [], "", []]);
+    expect([shown, jobs.entries, files.saved, told]).toEqual([["pot-report.pdf"], [], null, []]);
   });
 
   it("is canceled when its dialog closes", async () => {

@@ -370,7 +370,7 @@ export class StrataFigureDialog extends LitElement {
       make: words.make,
       making: words.making,
       cancel: words.cancel,
-      saved: words.saved,
+      saved: ({ name }) => words.saved(name),
       problem: this._problem?.field === "" ? this._problem.text : "",
     });
   }

@@ -107,7 +107,7 @@ export class StrataReportDialog extends LitElement {
         make: words.make,
         making: this.session.files.awaitsPreview ? words.making_preview : words.making,
         cancel: this.session.files.awaitsPreview ? words.cancel_preview : words.cancel,
-        saved: words.saved,
+        saved: ({ name }) => words.saved(name),
         problem: this._problems.get("") ?? "",
         actions: html`<button slot="actions" ?disabled=${!this._file.isFree} @click=${() => this.preview()}>${words.preview}</button>`,
         status: this._preview?.render(this.settings) ?? null,

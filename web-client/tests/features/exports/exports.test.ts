@@ -1,6 +1,11 @@
 import { describe, expect, it } from "vitest";
 
-import { exportRequest, kTextureSizes, kUsualExport } from "../../../src/domain/exports";
+import {
+  exportRequest,
+  kTextureSizes,
+  kUsualExport,
+  triangleCounts,
+} from "../../../src/domain/exports";
 import { ModelExports } from "../../../src/features/exports/exports";
 import { Api } from "../../../src/net/api";
 import { FileJobs } from "../../../src/session/file-jobs";
@@ -23,20 +28,52 @@ describe("The request for a 3D model", () => {
         { layer: 5, visible: true, opacity: 0.5 },
       ],
       looks: [{ look: "infrared" }],
+      format: "glb",
       texture_format: "jpeg",
       unlit: false,
     });
   });
 
-  it("has the chosen features, size, format and light", () => {
-    const input = { layers: [5], features: 7, size: 4096, format: "png", unlit: true } as const;
+  it("has the chosen features, part, triangles, size, format and light", () => {
+    const input = {
+      file: "glb",
+      layers: [5],
+      features: 7,
+      part: 3,
+      triangles: 50_000,
+      size: 4096,
+      format: "png",
+      unlit: true,
+    } as const;
     expect(exportRequest(input, [5], [5], {})).toEqual({
       layers: [{ layer: 5, visible: true }],
+      format: "glb",
       features: 7,
+      within: { selection: 3 },
+      max_triangles: 50_000,
       texture_size: 4096,
       texture_format: "png",
       unlit: true,
     });
+  });
+
+  it("has no features in an OBJ file, but keeps the choice for a GLB file", () => {
+    const input = { ...kUsualExport, file: "obj", features: 7 } as const;
+    expect(exportRequest(input, [], [], {})).toEqual({
+      layers: [],
+      format: "obj",
+      texture_format: "jpeg",
+      unlit: false,
+    });
+    expect(exportRequest({ ...input, file: "glb" }, [], [], {}).features).toBe(7);
+  });
+
+  it("has fewer triangles than the model, in steps that the server accepts", () => {
+    expect(triangleCounts(10_000)).toEqual([]);
+    expect(triangleCounts(120_000)).toEqual([100_000, 50_000, 10_000]);
+    const all = triangleCounts(Infinity);
+    expect(Math.min(...all)).toBeGreaterThanOrEqual(100);
+    expect(Math.max(...all)).toBeLessThan(2 ** 32);
   });
 
   it("has a size that the server accepts", () => {

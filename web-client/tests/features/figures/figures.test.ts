@@ -397,12 +397,7 @@ describe("a figure", () => {
       { key, name: "Figure: Pot", job: { state: "running", progress: 0.5 } },
     ]);
     await end(job("done", { file }));
-    expect([saved, files.saved, jobs.entries, told]).toEqual([
-      ["pot-front.pdf"],
-      "pot-front.pdf",
-      [],
-      [],
-    ]);
+    expect([saved, files.saved, jobs.entries, told]).toEqual([["pot-front.pdf"], file, [], []]);
   });
 
   it("is offered where nobody waits any more, and stays listed until it is saved", async () => {
