@@ -1,7 +1,5 @@
 #include "app/layers/drawn_layers.h"
 
-#include <algorithm>
-
 #include "domain/layers/layer.h"
 #include "mesh/texture/texture_sampler.h"
 #include "room/caches/record_colors.h"
@@ -54,8 +52,8 @@ Result<ComposedSurface> compose_surface(const Services& services, room::Room& ro
       shown.images.value_or(room::surface_images_shown(room.surface_images().all()));
   for (const room::SurfaceImageView& image : images) {
     DecodedPhoto photo = STRATA_TRY(decode_photo(services, image));
-    while (pixels && std::min(photo.picture.width, photo.picture.height) >= 2 * *pixels)
-      photo.picture = mesh::halve(photo.picture);
+    while (pixels && mesh::halve_toward(photo.picture, *pixels)) {
+    }
     composed.colors.add_photo(std::move(photo.picture), image.opacity);
     composed.memory.push_back(std::move(photo.memory));
   }

@@ -16,27 +16,46 @@ int wrapped(std::int64_t at, int size, Wrap wrap) {
   return static_cast<int>(in_period < size ? in_period : period - 1 - in_period);
 }
 
+// Returns an image whose pixels are the mean light of `across` × `down` pixels, each 1 or 2.
+Picture reduced(const Picture& picture, int across, int down) {
+  const ColorTables& tables = color_tables();
+  Picture small{std::max(picture.width / across, 1), std::max(picture.height / down, 1), {}};
+  small.rgba.resize(std::size_t(small.width) * small.height * 4);
+  std::uint8_t* out = small.rgba.data();
+  const int count = across * down;
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x, out += 4) {
+      const std::uint8_t* pixels[4];
+      std::uint32_t alpha = 0;
+      for (int k = 0; k < count; ++k) {
+        const int from_x = std::min(across * x + k % across, picture.width - 1),
+                  from_y = std::min(down * y + k / across, picture.height - 1);
+        pixels[k] = &picture.rgba[(std::size_t(from_y) * picture.width + from_x) * 4];
+        alpha += pixels[k][3];
+      }
+      // Invisible pixels have equal weights. Filters of larger images can show their color.
+      const std::uint32_t weights = alpha > 0 ? alpha : static_cast<std::uint32_t>(count);
+      for (int c = 0; c < 3; ++c) {
+        std::uint32_t light = weights / 2;
+        for (int k = 0; k < count; ++k)
+          light += (alpha > 0 ? pixels[k][3] : 1u) * tables.linear[pixels[k][c]];
+        out[c] = tables.srgb[light / weights];
+      }
+      out[3] = static_cast<std::uint8_t>((alpha + static_cast<std::uint32_t>(count) / 2) /
+                                         static_cast<std::uint32_t>(count));
+    }
+  return small;
+}
+
 }  // namespace
 
-Picture halve(const Picture& picture) {
-  const ColorTables& tables = color_tables();
-  Picture half{std::max(picture.width / 2, 1), std::max(picture.height / 2, 1), {}};
-  half.rgba.resize(std::size_t(half.width) * half.height * 4);
-  std::uint8_t* out = half.rgba.data();
-  for (int y = 0; y < half.height; ++y)
-    for (int x = 0; x < half.width; ++x, out += 4) {
-      std::uint32_t light[3] = {2, 2, 2}, alpha = 2;
-      for (int k = 0; k < 4; ++k) {
-        const int sx = std::min(2 * x + k % 2, picture.width - 1),
-                  sy = std::min(2 * y + k / 2, picture.height - 1);
-        const std::uint8_t* p = &picture.rgba[(std::size_t(sy) * picture.width + sx) * 4];
-        for (int c = 0; c < 3; ++c) light[c] += tables.linear[p[c]];
-        alpha += p[3];
-      }
-      for (int c = 0; c < 3; ++c) out[c] = tables.srgb[light[c] / 4];
-      out[3] = static_cast<std::uint8_t>(alpha / 4);
-    }
-  return half;
+Picture halve(const Picture& picture) { return reduced(picture, 2, 2); }
+
+bool halve_toward(Picture& picture, int side) {
+  const int across = picture.width >= 2 * side ? 2 : 1, down = picture.height >= 2 * side ? 2 : 1;
+  if (across == 1 && down == 1) return false;
+  picture = reduced(picture, across, down);
+  return true;
 }
 
 glm::vec4 TextureSampler::sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {

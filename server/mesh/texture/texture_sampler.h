@@ -8,8 +8,14 @@
 namespace strata::mesh {
 
 // Returns an image with half the width and height (at least 1). Each pixel is the mean light of
-// four pixels.
+// four pixels, weighted by their alpha. So the color of transparent pixels, which is often black,
+// does not darken the border of an image.
 Picture halve(const Picture& picture);
+
+// Halves each side of an image of the atlas that has at least 2 · `side` pixels. Returns false if
+// none has. Call it until then, so that a texture with `side` pixels shows the mean of finer
+// pixels.
+bool halve_toward(Picture& picture, int side);
 
 // A decoded texture with the lookup of a GPU: texel centers at (i + 0.5) / size, UV origin at the
 // lower left, bilinear interpolation.

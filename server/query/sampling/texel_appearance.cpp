@@ -65,10 +65,8 @@ Result<TexelAppearance> vertex_colors_of_texels(const mesh::Geometry& geometry,
 
 Result<void> draw_over(TexelAppearance& colors, Picture picture, float opacity,
                        const mesh::SurfaceMap& map, Progress& progress, int threads) {
-  while (std::min(picture.width, picture.height) >= 2 * map.resolution) {
+  while (mesh::halve_toward(picture, map.resolution))
     if (progress.cancelled()) return cancelled_problem();
-    picture = mesh::halve(picture);
-  }
   const mesh::TextureSampler sampler(picture);
   return for_each_texel(map.surface_mask, progress, threads, [&](std::size_t texel) {
     const std::uint32_t block = map.block_of_slot[texel / 64];

@@ -341,6 +341,26 @@ TEST(TextureSampler, half_a_picture_has_the_mean_light) {
   EXPECT_EQ(mesh::halve({3, 1, std::vector<std::uint8_t>(12, 7)}).width, 1);
 }
 
+TEST(TextureSampler, transparent_pixels_do_not_darken_half_a_picture) {
+  const Picture picture{2, 2, {200, 100, 50, 255, 0, 0, 0, 0, 0, 0, 0, 0, 200, 100, 50, 255}};
+  const Picture half = mesh::halve(picture);
+  EXPECT_EQ(half.rgba, (std::vector<std::uint8_t>{200, 100, 50, 128}));
+  const Picture invisible{2, 1, {10, 20, 30, 0, 10, 20, 30, 0}};
+  EXPECT_EQ(mesh::halve(invisible).rgba, (std::vector<std::uint8_t>{10, 20, 30, 0}));
+}
+
+TEST(TextureSampler, each_side_of_a_picture_is_halved_toward_the_texture) {
+  Picture picture{8, 3, std::vector<std::uint8_t>(8 * 3 * 4, 9)};
+  for (int x = 0; x < 8; ++x) picture.rgba[static_cast<std::size_t>(x) * 4] = x < 4 ? 40 : 80;
+  ASSERT_TRUE(mesh::halve_toward(picture, 2));
+  EXPECT_EQ(std::pair(picture.width, picture.height), std::pair(4, 3));
+  EXPECT_EQ(picture.rgba[0], 40) << "the rows are not mixed";
+  EXPECT_EQ(picture.rgba[12], 80);
+  ASSERT_TRUE(mesh::halve_toward(picture, 2));
+  EXPECT_EQ(std::pair(picture.width, picture.height), std::pair(2, 3));
+  EXPECT_FALSE(mesh::halve_toward(picture, 2));
+}
+
 TEST(GutterFill, everything_gets_a_colour_and_rings_the_nearest) {
   Picture picture{64, 40, std::vector<std::uint8_t>(64 * 40 * 4, 0)};
   const auto put = [&](int x, int y, std::uint8_t red) {
