@@ -98,7 +98,8 @@ FeatureProperty::Choices choices_of(const FeatureTable& table, std::size_t field
 }
 
 FeatureProperty property_of(const FeatureTable& table, std::size_t field) {
-  FeatureProperty property{table.fields[field].name, {}};
+  FeatureProperty property{table.fields[field].name, {}, table.fields[field].title,
+                           table.fields[field].unit};
   if (!table.fields[field].choices.empty()) {
     property.values = choices_of(table, field);
     return property;

@@ -18,6 +18,7 @@ struct FeatureField {
   std::string name;  // unique in its table; case does not matter
   Kind kind = Kind::text;
   std::vector<std::string> choices{};  // the possible texts of an enumeration
+  std::string title{}, unit{};         // of a column, for people; empty: none
 };
 
 enum class FeatureKind { areas, lines, points };

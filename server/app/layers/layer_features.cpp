@@ -97,7 +97,7 @@ class Fields {
     std::string name = column.slug;
     while (taken_.contains(name)) name = "column_" + name;
     taken_.insert(name);
-    fields_.push_back({std::move(name), kind_of(column), column.choices});
+    fields_.push_back({std::move(name), kind_of(column), column.choices, column.name, column.unit});
   }
   std::vector<FeatureField> take() { return std::move(fields_); }
 

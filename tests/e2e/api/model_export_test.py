@@ -442,6 +442,11 @@ def test_records_become_features_with_their_columns(server, tmp_path):
     areas = server.get(M + "/layers/finds/quantities").json()["quantities"]
     assert values["area_m2"] == pytest.approx([each["area_m2"] for each in areas])
     check_ids(server, glb, ids, features, "finds", values["key"])
+    schema = glb.json["extensions"]["EXT_structural_metadata"]["schema"]
+    described = schema["classes"]["feature"]["properties"]
+    assert (described["depth"]["name"], described["depth"]["description"]) == ("Depth", "Unit: m")
+    assert described["_2nd_name"]["name"] == "2nd name" and described["key"]["name"] == "key"
+    assert schema["enums"]["state"]["name"] == "State", schema["enums"]
 
 
 def check_ids(server, glb, ids, features, layer, value_of):

@@ -262,5 +262,16 @@ TEST(PropertyTable, names_become_different_identifiers_and_empty_properties_are_
   EXPECT_EQ(table.views.size(), 8u);
 }
 
+TEST(PropertyTable, titles_and_units_are_for_people) {
+  const FeatureProperty depth{"depth", FeatureProperty::Numbers{1.0}, "Depth of the find", "mm"};
+  const FeatureProperty state{"state", FeatureProperty::Choices{{"good"}, {0}}, "Zustand", ""};
+  const auto table = table_of(1, {depth, state});
+  EXPECT_EQ(described(table, "depth")["name"], "Depth of the find");
+  EXPECT_EQ(described(table, "depth")["description"], "Unit: mm");
+  EXPECT_EQ(described(table, "state")["name"], "Zustand");
+  EXPECT_FALSE(described(table, "state").contains("description"));
+  EXPECT_EQ(table.extension["schema"]["enums"]["state"]["name"], "Zustand");
+}
+
 }  // namespace
 }  // namespace strata::mesh

@@ -56,18 +56,17 @@ class TableWriter {
 
   void add(const FeatureProperty& property) {
     std::visit(Overloaded{[&](const FeatureProperty::Numbers& numbers) {
-                            if (has_any(numbers)) add_numbers(property.name, numbers);
+                            if (has_any(numbers)) add_numbers(property, numbers);
                           },
                           [&](const FeatureProperty::Flags& flags) {
-                            if (has_any(flags)) add_flags(property.name, flags);
+                            if (has_any(flags)) add_flags(property, flags);
                           },
                           [&](const FeatureProperty::Texts& texts) {
                             const auto is_empty = [](const auto& text) { return text.empty(); };
-                            if (!std::ranges::all_of(texts, is_empty))
-                              add_texts(property.name, texts);
+                            if (!std::ranges::all_of(texts, is_empty)) add_texts(property, texts);
                           },
                           [&](const FeatureProperty::Choices& choices) {
-                            if (has_any(choices.values)) add_choices(property.name, choices);
+                            if (has_any(choices.values)) add_choices(property, choices);
                           }},
                property.values);
   }
@@ -92,14 +91,20 @@ class TableWriter {
     return first_view_ + views_.size() - 1;
   }
 
-  std::string describe(const std::string& name, nlohmann::json description) {
-    std::string id = properties_.of(name);
-    description["name"] = id == name ? name : name + " (" + id + ")";
+  static std::string title_of(const FeatureProperty& property, const std::string& id) {
+    if (!property.title.empty()) return property.title;
+    return id == property.name ? id : property.name + " (" + id + ")";
+  }
+
+  std::string describe(const FeatureProperty& property, nlohmann::json description) {
+    std::string id = properties_.of(property.name);
+    description["name"] = title_of(property, id);
+    if (!property.unit.empty()) description["description"] = "Unit: " + property.unit;
     described_[id] = std::move(description);
     return id;
   }
 
-  void add_numbers(const std::string& name, const FeatureProperty::Numbers& numbers) {
+  void add_numbers(const FeatureProperty& property, const FeatureProperty::Numbers& numbers) {
     Bytes bytes;
     for (const auto& number : numbers) append(bytes, number.value_or(kNoNumber));
     nlohmann::json description{{"type", "SCALAR"}, {"componentType", "FLOAT64"}};
@@ -107,27 +112,27 @@ class TableWriter {
       description["required"] = true;
     else
       description["noData"] = kNoNumber;
-    const std::string id = describe(name, std::move(description));
+    const std::string id = describe(property, std::move(description));
     stored_[id] = {{"values", add_view(std::move(bytes))}};
   }
 
-  void add_flags(const std::string& name, const FeatureProperty::Flags& flags) {
+  void add_flags(const FeatureProperty& property, const FeatureProperty::Flags& flags) {
     if (!has_all(flags)) {
       FeatureProperty::Choices choices{{"false", "true"}, {}};
       for (const auto& flag : flags) {
         choices.values.emplace_back();
         if (flag) choices.values.back() = *flag ? 1 : 0;
       }
-      return add_choices(name, choices);
+      return add_choices(property, choices);
     }
     Bytes bytes((flags.size() + 7) / 8);
     for (std::size_t i = 0; i < flags.size(); ++i)
       if (*flags[i]) bytes[i / 8] |= static_cast<std::uint8_t>(1u << (i % 8));
-    const std::string id = describe(name, {{"type", "BOOLEAN"}, {"required", true}});
+    const std::string id = describe(property, {{"type", "BOOLEAN"}, {"required", true}});
     stored_[id] = {{"values", add_view(std::move(bytes))}};
   }
 
-  void add_texts(const std::string& name, const FeatureProperty::Texts& texts) {
+  void add_texts(const FeatureProperty& property, const FeatureProperty::Texts& texts) {
     std::size_t length = 0;
     for (const std::string& text : texts) length += text.size();
     const bool is_long = length > 0xffffffffu;
@@ -144,14 +149,14 @@ class TableWriter {
       bytes.insert(bytes.end(), text.begin(), text.end());
       append_offset();
     }
-    const std::string id = describe(name, {{"type", "STRING"}, {"noData", ""}});
+    const std::string id = describe(property, {{"type", "STRING"}, {"noData", ""}});
     const std::size_t values = add_view(std::move(bytes));
     stored_[id] = {{"values", values},
                    {"stringOffsets", add_view(std::move(offsets))},
                    {"stringOffsetType", is_long ? "UINT64" : "UINT32"}};
   }
 
-  void add_choices(const std::string& name, const FeatureProperty::Choices& choices) {
+  void add_choices(const FeatureProperty& property, const FeatureProperty::Choices& choices) {
     nlohmann::json values = nlohmann::json::array();
     for (std::size_t i = 0; i < choices.names.size(); ++i)
       values.push_back({{"name", choices.names[i]}, {"value", i}});
@@ -164,12 +169,13 @@ class TableWriter {
       values.push_back({{"name", none}, {"value", kNoChoice}});
       description["noData"] = none;
     }
-    const std::string type = enum_types_.of(name);
-    enums_[type] = {{"name", name}, {"valueType", "UINT16"}, {"values", std::move(values)}};
+    const std::string type = enum_types_.of(property.name);
+    enums_[type] = {
+        {"name", title_of(property, type)}, {"valueType", "UINT16"}, {"values", std::move(values)}};
     description["enumType"] = type;
     Bytes bytes;
     for (const auto& value : choices.values) append(bytes, value.value_or(kNoChoice));
-    const std::string id = describe(name, std::move(description));
+    const std::string id = describe(property, std::move(description));
     stored_[id] = {{"values", add_view(std::move(bytes))}};
   }
 
@@ -183,6 +189,22 @@ class TableWriter {
 };
 
 }  // namespace
+
+std::uint64_t bytes_of(const FeatureProperty& property) {
+  return std::visit(Overloaded{[](const FeatureProperty::Texts& texts) {
+                                 std::uint64_t bytes = texts.size() * sizeof(std::string);
+                                 for (const std::string& text : texts) bytes += text.size();
+                                 return bytes;
+                               },
+                               [](const FeatureProperty::Choices& choices) {
+                                 return std::uint64_t{choices.values.size() *
+                                                      sizeof(FeatureProperty::Choices::values[0])};
+                               },
+                               [](const auto& values) {
+                                 return std::uint64_t{values.size() * sizeof(values[0])};
+                               }},
+                    property.values);
+}
 
 PropertyTable property_table(const std::string& name, std::size_t count,
                              const std::vector<FeatureProperty>& properties,

@@ -22,7 +22,12 @@ struct FeatureProperty {
   };
   std::string name;  // such as "area_m2"
   std::variant<Numbers, Flags, Texts, Choices> values;
+  // For people; empty: none. Properties may have equal titles.
+  std::string title{}, unit{};
 };
+
+// Returns about the memory in bytes that the values need.
+std::uint64_t bytes_of(const FeatureProperty& property);
 
 // A property table of EXT_structural_metadata, with its schema (CesiumGS, 3D Metadata
 // Specification: binary table format).
@@ -39,11 +44,11 @@ struct PropertyTable {
 // - Flags are BOOLEAN. If one is missing, they are an ENUM of `false` and `true`.
 // - Texts are STRING. A missing text is empty, the `noData` of the property.
 // - Choices are an ENUM. The name of the value for a missing choice is "No data", the `noData` of
-// the
-//   property.
+//   the property.
 //
 // A property without any value is omitted. Names become valid and unique identifiers. The readable
-// name of a property also contains the name, if the identifier differs from it.
+// name of a property is its title. Without a title, it is the name, with the identifier if that
+// differs. The description contains the unit.
 PropertyTable property_table(const std::string& name, std::size_t count,
                              const std::vector<FeatureProperty>& properties,
                              std::size_t first_view);
