@@ -98,8 +98,8 @@ FeatureProperty::Choices choices_of(const FeatureTable& table, std::size_t field
 }
 
 FeatureProperty property_of(const FeatureTable& table, std::size_t field) {
-  FeatureProperty property{table.fields[field].name, {}, table.fields[field].title,
-                           table.fields[field].unit};
+  FeatureProperty property{
+      table.fields[field].name, {}, table.fields[field].title, table.fields[field].unit};
   if (!table.fields[field].choices.empty()) {
     property.values = choices_of(table, field);
     return property;
@@ -131,6 +131,29 @@ FeatureProperty property_of(const FeatureTable& table, std::size_t field) {
 
 }  // namespace
 
+IdChannels id_channels(std::uint32_t count) {
+  IdChannels channels;
+  // One more value than features, for texels without a feature.
+  while (count >= 1u << (8 * channels.channels)) ++channels.channels;
+  channels.none = (1u << (8 * channels.channels)) - 1;
+  return channels;
+}
+
+std::uint64_t bytes_to_write_ids(const Layer& layer) {
+  // A PNG is hardly larger than its pixels, also if it cannot be compressed.
+  constexpr std::uint64_t kPixel = 5;
+  const auto side = static_cast<std::uint64_t>(layer.resolution);
+  return kPixel * side * side;
+}
+
+std::uint64_t bytes_of(const mesh::GlbFeatures& features) {
+  constexpr std::uint64_t kCopies = 2;  // the values, and their bytes in the file
+  std::uint64_t bytes = features.ids.bytes.size();
+  for (const FeatureProperty& property : features.properties)
+    bytes += kCopies * mesh::bytes_of(property);
+  return bytes;
+}
+
 Result<mesh::GlbFeatures> glb_features(const LayerClasses& classes, Progress& progress) {
   const FeatureTable& table = classes.table;
   if (table.features.empty())
@@ -141,9 +164,9 @@ Result<mesh::GlbFeatures> glb_features(const LayerClasses& classes, Progress& pr
   mesh::GlbFeatures features;
   features.name = classes.areas.view.layer.name;
   features.count = static_cast<std::uint32_t>(table.features.size());
-  // One more value than features, for texels without a feature.
-  while (features.count >= 1u << (8 * features.channels)) ++features.channels;
-  features.none = (1u << (8 * features.channels)) - 1;
+  const IdChannels channels = id_channels(features.count);
+  features.channels = channels.channels;
+  features.none = channels.none;
   auto ids = STRATA_TRY(IdWriter(classes, features.none).write(progress));
   features.ids = {"image/png", std::move(ids)};
   for (std::size_t field = 0; field < table.fields.size(); ++field)

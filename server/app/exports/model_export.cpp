@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <bit>
 
+#include "app/cancellable.h"
 #include "app/exports/exported_surface.h"
 #include "app/exports/feature_ids.h"
 #include "app/layers/drawn_layers.h"
 #include "app/layers/layer_features.h"
+#include "core/memory_ledger.h"
 #include "core/uuid.h"
 #include "domain/scene/model.h"
 #include "media/picture_writer.h"
@@ -39,12 +41,19 @@ Result<mesh::SceneImage> encode(const Picture& picture, PictureFormat format, Pr
   return mesh::SceneImage{std::string(media_type(format)), writer.finish()};
 }
 
-Result<mesh::SceneImage> make_texture(const Services& services, const ModelExport& request,
-                                      Progress& progress) {
+// A part of the file with its memory, until the file is written.
+template <class Content>
+struct Held {
+  Content content;
+  MemoryLedger::Share memory;
+};
+
+Result<Held<mesh::SceneImage>> make_texture(const Services& services, const ModelExport& request,
+                                            Progress& progress) {
   const int size = request.texture_size ? *request.texture_size : default_texture_size(request);
   const auto geometry = request.room->surface().geometry();
-  const auto memory = STRATA_TRY(services.rooms.memory().reserve(
-      query::bytes_to_bake(*geometry, size), "the texture of a model"));
+  auto memory = STRATA_TRY(services.rooms.memory().reserve(query::bytes_to_bake(*geometry, size),
+                                                           "the texture of a model"));
   Picture picture;
   {
     const ComposedSurface surface = STRATA_TRY(compose_surface(
@@ -53,7 +62,24 @@ Result<mesh::SceneImage> make_texture(const Services& services, const ModelExpor
     picture = std::move(baked);
   }
   progress.begin_stage(query::kBaked, kEncoded);
-  return encode(picture, request.texture_format, progress);
+  auto image = STRATA_TRY(encode(picture, request.texture_format, progress));
+  memory.recount(image.bytes.size());
+  return Held<mesh::SceneImage>{std::move(image), std::move(memory)};
+}
+
+Result<Held<mesh::GlbFeatures>> make_features(const Services& services, const ModelExport& request,
+                                              Progress& progress) {
+  progress.report(0, "Reading the features");
+  auto memory = STRATA_TRY(services.rooms.memory().reserve(bytes_to_write_ids(*request.features),
+                                                           "the features of a model"));
+  const auto classes = STRATA_TRY(cancellable(progress, [&] {
+    return layer_classes(
+        services.store,
+        {request.room, *request.features, request.at, {}, request.role, request.language});
+  }));
+  auto features = STRATA_TRY(glb_features(classes, progress));
+  memory.recount(bytes_of(features));
+  return Held<mesh::GlbFeatures>{std::move(features), std::move(memory)};
 }
 
 }  // namespace
@@ -86,17 +112,14 @@ Result<std::shared_ptr<const TemporaryFile>> export_model(const Services& servic
   model.unlit = request.unlit;
   const bool is_glb = request.format == ModelFileFormat::glb;
   if (is_glb) STRATA_TRY(mesh::check_glb_size(*model.geometry));  // before the long work
-  auto color = STRATA_TRY(make_texture(services, request, progress));
-  model.color = std::move(color);
+  auto texture = STRATA_TRY(make_texture(services, request, progress));
+  model.color = std::move(texture.content);
   progress.begin_stage(kEncoded, kIdsWritten);
+  MemoryLedger::Share of_features;
   if (request.features) {
-    if (progress.cancelled()) return cancelled_problem();
-    progress.report(0, "Reading the features");
-    const auto classes = STRATA_TRY(layer_classes(
-        services.store,
-        {request.room, *request.features, request.at, {}, request.role, request.language}));
-    auto features = STRATA_TRY(glb_features(classes, progress));
-    model.features = std::move(features);
+    auto features = STRATA_TRY(make_features(services, request, progress));
+    model.features = std::move(features.content);
+    of_features = std::move(features.memory);
   }
   progress.begin_stage(kIdsWritten, 1);
   auto file = std::make_shared<TemporaryFile>(folder / (to_string(random_uuid()) + ".model"));
