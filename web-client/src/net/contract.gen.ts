@@ -4454,6 +4454,7 @@ export interface operations {
                 content: {
                     "application/pdf": string;
                     "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet": string;
+                    "application/zip": string;
                     "image/png": string;
                     "image/svg+xml": string;
                     "image/tiff": string;
