@@ -333,6 +333,9 @@ export const particulars = {
     content: { "image/png": file("picture.png") },
   },
   get_photograph: of_photograph,
+  get_ogc_items: { path: { collection: mostly("wall.units", "wall.cracks") } },
+  get_ogc_item: { path: { collection: mostly("wall.units"), feature: mostly("1", "2") } },
+  get_ogc_coverage: { path: { collection: mostly("wall.moisture", "wall.cracks") } },
   get_ogc_position: {
     path: { collection: mostly("wall") },
     query: { coords: one("POINT(0.02 0.02)", "POINT Z(0.02 0.02 0)", "POINT(1") },
