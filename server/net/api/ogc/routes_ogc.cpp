@@ -123,7 +123,7 @@ Result<Response> collections(const RouteContext& context, const Request& request
     if (added) continue;
     if (added.error().code != ErrorCode::not_found) return tl::unexpected(added.error());
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(before),
-               list.end());  // deleted meanwhile
+               list.end());  // deleted since the models were read
   }
   return ogc_document(context, request,
                       {{"title", "Collections"},
