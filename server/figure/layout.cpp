@@ -17,7 +17,8 @@ constexpr double kTitle = 4.2, kText = 2.8, kSmall = 2.2;  // letter heights
 constexpr double kLine = 1.45;
 constexpr double kFrame = 0.2, kThin = 0.12;  // line widths
 constexpr int kMaxTitleLines = 2, kMaxCaptionLines = 8, kMaxCreditLines = 3;
-constexpr double kScaleWidth = 80, kScaleHeight = 16;
+constexpr double kScaleWidth = 80, kScaleHeight = 16, kMinTextWidth = 40;
+constexpr double kSheetFrame = 0.5, kFramePadding = 3;  // of the frame around the sheet
 constexpr double kLegendColumn = 56, kSwatchWidth = 6, kSwatchHeight = 3, kEntry = 4.2,
                  kTitleGap = 1.2;
 
@@ -275,6 +276,41 @@ double height_of(const std::vector<std::string>& lines, double size) {
   return static_cast<double>(lines.size()) * size * kLine;
 }
 
+// The parts of a sheet that do not depend on its texts.
+struct Space {
+  Box content;             // of the drawing, the legend and the strip below them
+  double strip_width = 0;  // of the caption and the scale bar
+  double least_strip = 0;  // height
+  Box block;               // empty without a title block
+  BlockShape block_shape = BlockShape::wide;
+};
+// A title block is in the bottom right corner of the frame. It is next to the strip if the paper is
+// wide enough for both. Otherwise, it is below the strip and as wide as the frame.
+Space space_for(const glm::dvec2& paper, double margin, bool has_block) {
+  Space space;
+  space.content = {glm::dvec2(margin), paper - 2 * margin};
+  space.strip_width = space.content.size.x;
+  if (!has_block) return space;
+  const Box frame = space.content;
+  const glm::dvec2 end = frame.corner + frame.size;
+  space.content = {frame.corner + kFramePadding, frame.size - 2 * kFramePadding};
+  const double beside = kCompactBlock_mm + kGap;
+  const bool is_beside = space.content.size.x >= kMinTextWidth + kGap + kScaleWidth + beside;
+  space.block_shape =
+      is_beside || frame.size.x < kWideBlock_mm ? BlockShape::compact : BlockShape::wide;
+  const double height = block_height_mm(space.block_shape),
+               width = is_beside ? kCompactBlock_mm : frame.size.x;
+  space.block = {end - glm::dvec2(width, height), {width, height}};
+  space.strip_width = space.content.size.x;
+  if (is_beside) {
+    space.strip_width += kFramePadding - beside;
+    space.least_strip = height - kFramePadding;
+  } else {
+    space.content.size.y += kFramePadding - height - kGap;
+  }
+  return space;
+}
+
 Group bar_group(const ScaleBar& bar, double scale, const glm::dvec2& right_bottom) {
   Group group{"scale-bar", {}};
   constexpr double kBar = 2;
@@ -347,17 +383,23 @@ ScaleBar scale_bar(double scale, double widest_mm) {
 SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
                          const std::vector<Legend>& legends, int dpi, double margin) {
   sheet_.size = paper;
-  const double width = paper.x - 2 * margin;
-  const double text_width = std::max(40.0, width - kScaleWidth - kGap);
-  const auto title = wrapped(captions.title, kTitle, true, text_width, kMaxTitleLines);
+  block_ = captions.block;
+  const Space space = space_for(paper, margin, block_.has_value());
+  block_box_ = space.block;
+  block_shape_ = space.block_shape;
+  const double width = space.content.size.x;
+  const glm::dvec2 &top_left = space.content.corner, bottom_right = top_left + space.content.size;
+  const double text_width = std::max(kMinTextWidth, space.strip_width - kScaleWidth - kGap);
+  const auto title =
+      wrapped(block_ ? std::string() : captions.title, kTitle, true, text_width, kMaxTitleLines);
   const auto caption = wrapped(captions.caption, kText, false, text_width, kMaxCaptionLines);
   const auto credit = wrapped(captions.credit, kSmall, false, text_width, kMaxCreditLines);
   const double text_height =
       height_of(title, kTitle) + height_of(caption, kText) + height_of(credit, kSmall) + 2;
-  const double strip = std::max(text_height, kScaleHeight);
-  const double strip_top = paper.y - margin - strip;
+  const double strip = std::max({text_height, kScaleHeight, space.least_strip});
+  const double strip_top = bottom_right.y - strip;
 
-  Box area{{margin, margin}, {width, strip_top - kGap - margin}};
+  Box area{top_left, {width, strip_top - kGap - top_left.y}};
   const bool aside = paper.x > paper.y;  // the legend is at the right of the drawing
   const int columns = aside ? 1 : std::max(1, static_cast<int>(width / kLegendColumn));
   const auto lists = lists_of(legends, aside ? kLegendColumn - 2 : width / columns - 4);
@@ -366,14 +408,14 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
     area.size.x -= kLegendColumn + kGap;
     const auto placed = place_legend(lists, columns, area.size.y, area.size.y, captions.continued);
     legend.items = legend_items(
-        placed, {{paper.x - margin - kLegendColumn, margin}, {kLegendColumn, area.size.y}},
+        placed, {{bottom_right.x - kLegendColumn, top_left.y}, {kLegendColumn, area.size.y}},
         columns);
   } else if (!lists.empty()) {
     const auto placed =
         place_legend(lists, columns, area.size.y / 4, area.size.y / 3, captions.continued);
     area.size.y -= placed.height + kGap;
     legend.items = legend_items(
-        placed, {{margin, strip_top - kGap - placed.height}, {width, placed.height}}, columns);
+        placed, {{top_left.x, strip_top - kGap - placed.height}, {width, placed.height}}, columns);
   }
 
   // The drawing starts and ends at whole pixels, so it has the exact scale in all file formats.
@@ -390,11 +432,18 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
   border.stroke_mm = kFrame;
   frame.items.push_back(std::move(border));
   Group words{"caption", {}};
-  double y = add_lines(words.items, title, {margin, strip_top}, kTitle, true);
-  y = add_lines(words.items, caption, {margin, y + 0.6}, kText, false);
-  add_lines(words.items, credit, {margin, y + 0.8}, kSmall, false);
+  double y = add_lines(words.items, title, {top_left.x, strip_top}, kTitle, true);
+  y = add_lines(words.items, caption, {top_left.x, y + 0.6}, kText, false);
+  add_lines(words.items, credit, {top_left.x, y + 0.8}, kSmall, false);
   sheet_.groups = {std::move(frame), std::move(legend), std::move(words)};
-  scale_box_ = {{paper.x - margin - kScaleWidth, strip_top}, {kScaleWidth, kScaleHeight}};
+  scale_box_ = {{top_left.x + space.strip_width - kScaleWidth, strip_top},
+                {kScaleWidth, kScaleHeight}};
+  if (!block_) return;
+  Group sheet_frame{"sheet-frame", {}};
+  Path around = rectangle(glm::dvec2(margin), paper - 2 * margin);
+  around.stroke_mm = kSheetFrame;
+  sheet_frame.items.push_back(std::move(around));
+  sheet_.groups.push_back(std::move(sheet_frame));
 }
 
 Sheet SheetLayout::finish(double scale, const std::optional<glm::dvec2>& north,
@@ -413,6 +462,12 @@ Sheet SheetLayout::finish(double scale, const std::optional<glm::dvec2>& north,
   if (north)
     sheet.groups.push_back(arrow_group(
         *north, {scale_box_.corner.x + kArrowRoom / 2, scale_box_.corner.y + kScaleHeight / 2}));
+  if (block_) {
+    TitleBlock block = *block_;
+    block.scale.text = scale_text(scale);
+    sheet.groups.push_back(
+        title_block_group(block, block_shape_, block_box_.corner, block_box_.size.x));
+  }
   return sheet;
 }
 

@@ -6,6 +6,7 @@
 #include "figure/drawing.h"
 #include "figure/legend.h"
 #include "figure/sheet.h"
+#include "figure/title_block.h"
 
 namespace strata::figure {
 
@@ -18,6 +19,9 @@ struct Captions {
   std::string title, caption, credit;
   // Text after the title of a list that continues in another column of the legend.
   std::string continued = "(continued)";
+  // At the bottom right, in a frame around the sheet. It contains `title`, which is then not above
+  // the caption. finish() adds the scale.
+  std::optional<TitleBlock> block{};
 };
 
 struct Label {
@@ -47,6 +51,9 @@ class SheetLayout {
  private:
   Sheet sheet_;
   Box scale_box_;  // for the scale bar and the arrow
+  std::optional<TitleBlock> block_;
+  BlockShape block_shape_ = BlockShape::wide;
+  Box block_box_;
   int width_ = 0, height_ = 0;
 };
 

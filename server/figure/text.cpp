@@ -1,5 +1,7 @@
 #include "figure/text.h"
 
+#include <algorithm>
+
 #include "figure/cairo_owners.h"
 #include "figure/pango_layout.h"
 
@@ -9,6 +11,7 @@ namespace {
 // Letters are enlarged by this factor for measuring. Pango rounds to its units, 1024 per point, so
 // large letters reduce the error.
 constexpr double kMeasured = 100;
+constexpr const char* kCut = " …";  // at the end of a text that was cut
 
 // Makes a context that is used for measuring only.
 CairoContext measuring_context() {
@@ -64,7 +67,16 @@ std::vector<std::string> wrapped(const std::string& text, double size_mm, bool b
       words.pop_back();
     lines.push_back(std::move(words));
   }
-  if (count > most_lines) lines.back() += " …";
+  if (count > most_lines) lines.back() += kCut;
+  return lines;
+}
+
+std::vector<std::string> fitted(const std::string& text, double size_mm, bool bold, double width_mm,
+                                int most_lines) {
+  auto lines = wrapped(text, size_mm, bold, width_mm, most_lines);
+  if (lines.empty() || figure::width_mm(lines.back(), size_mm, bold) <= width_mm) return lines;
+  const double room_mm = width_mm - figure::width_mm(kCut, size_mm, bold);
+  lines.back() = wrapped(lines.back(), size_mm, bold, std::max(1.0, room_mm), 1).front();
   return lines;
 }
 

@@ -15,5 +15,8 @@ double width_mm(const std::string& text, double size_mm, bool bold);
 // the last line with "…".
 std::vector<std::string> wrapped(const std::string& text, double size_mm, bool bold,
                                  double width_mm, int most_lines);
+// As wrapped(), but a line that ends with "…" is not wider than the others.
+std::vector<std::string> fitted(const std::string& text, double size_mm, bool bold, double width_mm,
+                                int most_lines);
 
 }  // namespace strata::figure

@@ -26,6 +26,11 @@ room::Portrait portrait_of(const store::Person& person) {
   return {person.full_name, std::string(person_color(person.id))};
 }
 
+std::string written_name(store::Store& store, const std::string& user) {
+  const auto person = store.accounts().find(user);
+  return person && !person->full_name.empty() ? person->full_name : user;
+}
+
 void add_color(nlohmann::json& json, const store::Person& person) {
   json["color"] = person_color(person.id);
 }

@@ -15,6 +15,9 @@ namespace strata::net {
 // Returns the display name and the color of a user.
 room::Portrait portrait_of(const store::Person& person);
 
+// Returns the full name of a user or, without one, the user name.
+std::string written_name(store::Store& store, const std::string& user);
+
 // Adds `color` to the object that names the user.
 void add_color(nlohmann::json& json, const store::Person& person);
 

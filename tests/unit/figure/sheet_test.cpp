@@ -46,6 +46,35 @@ Picture drawing_of(const SheetLayout& layout) {
   return picture;
 }
 
+TitleBlock title_block(const std::string& text) {
+  TitleBlock block;
+  for (auto* field :
+       {&block.organization, &block.project, &block.object, &block.title, &block.author,
+        &block.checked_by, &block.date, &block.status, &block.scale, &block.number, &block.sheet})
+    *field = {"Name of the field", text};
+  return block;
+}
+
+// Returns the smallest box around the content of a group.
+Box box_of(const Group& group) {
+  glm::dvec2 low(1e9), high(-1e9);
+  const auto add = [&](const glm::dvec2& point) {
+    low = glm::min(low, point), high = glm::max(high, point);
+  };
+  for (const Item& item : group.items) {
+    if (const auto* path = std::get_if<Path>(&item)) std::ranges::for_each(path->points, add);
+    if (const auto* words = std::get_if<Words>(&item)) {
+      const double width = width_mm(words->text, words->size_mm, words->bold);
+      const double left = words->anchor == Anchor::start    ? 0
+                          : words->anchor == Anchor::middle ? width / 2
+                                                            : width;
+      add(words->at - glm::dvec2(left, 0.75 * words->size_mm));
+      add(words->at + glm::dvec2(width - left, 0.2 * words->size_mm));
+    }
+  }
+  return {low, high - low};
+}
+
 template <class Kind>
 std::vector<Kind> all(const Sheet& sheet) {
   std::vector<Kind> found;
@@ -88,6 +117,91 @@ TEST(SheetLayout, EverythingIsOnThePaperAndBesideTheDrawing) {
             all<Words>(sheet), [](const Words& words) { return words.text.starts_with("… + "); });
         EXPECT_EQ(cut, entries == 200) << "what has no room is counted";
       }
+}
+
+TEST(SheetLayout, NothingOverlapsTheTitleBlock) {
+  for (const Paper paper : {Paper::a5, Paper::a4, Paper::a3})
+    for (const bool landscape : {false, true})
+      for (const int entries : {0, 5, 200})
+        for (const std::string& text : {std::string("Text"), std::string(300, 'm'),
+                                        std::string("many words ") + std::string(80, ' ') + "end",
+                                        std::string("two\nlines")}) {
+          SCOPED_TRACE(std::to_string(static_cast<int>(paper)) + (landscape ? " landscape " : " ") +
+                       std::to_string(entries) + " " + text);
+          const glm::dvec2 size = paper_mm(paper, landscape);
+          Captions captions{"Not above the caption", std::string(1000, 'w'), kCaptions.credit};
+          captions.block = title_block(text);
+          const SheetLayout layout(size, captions,
+                                   entries == 0 ? std::vector<Legend>{} : legends(entries), 300);
+          const Sheet sheet = layout.finish(20, glm::dvec2(0, -1), {});
+          EXPECT_GT(sheet.drawing.size.x, size.x / 3);
+          EXPECT_GT(sheet.drawing.size.y, size.y / 5);
+          std::vector<std::pair<std::string, Box>> boxes{{"drawing", sheet.drawing}};
+          Box frame;
+          bool has_scale = false;
+          for (const Group& group : sheet.groups) {
+            if (group.id == "sheet-frame") frame = box_of(group);
+            if (group.id == "frame" || group.id == "sheet-frame" || group.items.empty()) continue;
+            boxes.emplace_back(group.id, box_of(group));
+          }
+          for (const Words& words : all<Words>(sheet)) {
+            EXPECT_NE(words.text, "Not above the caption");
+            has_scale |= words.text == "1 : 20" && words.size_mm < 2.7;
+          }
+          EXPECT_TRUE(has_scale);
+          EXPECT_EQ(boxes.back().first, "title-block");
+          const Box block = boxes.back().second;
+          EXPECT_LT(glm::distance(block.corner + block.size, frame.corner + frame.size), 1e-9);
+          for (std::size_t i = 0; i < boxes.size(); ++i) {
+            const auto& [name, box] = boxes[i];
+            const glm::dvec2 end = box.corner + box.size;
+            EXPECT_TRUE(box.corner.x >= frame.corner.x - 1e-9 &&
+                        box.corner.y >= frame.corner.y - 1e-9 &&
+                        end.x <= frame.corner.x + frame.size.x + 1e-9 &&
+                        end.y <= frame.corner.y + frame.size.y + 1e-9)
+                << name << " leaves the frame";
+            for (std::size_t j = 0; j < i; ++j) {
+              const Box& other = boxes[j].second;
+              const glm::dvec2 other_end = other.corner + other.size;
+              EXPECT_TRUE(end.x <= other.corner.x || other_end.x <= box.corner.x ||
+                          end.y <= other.corner.y || other_end.y <= box.corner.y)
+                  << name << " overlaps " << boxes[j].first;
+            }
+          }
+        }
+}
+
+TEST(SheetLayout, TextsOfTheTitleBlockStayInTheirFields) {
+  for (const BlockShape shape : {BlockShape::wide, BlockShape::compact})
+    for (const std::string& text : {std::string(300, 'm'), std::string(40, 'i'),
+                                    std::string("A title of several words that needs two lines, "
+                                                "or even three lines, or more than three lines")}) {
+      const Group group = title_block_group(title_block(text), shape, {20, 30}, 128);
+      Box cell;
+      int texts = 0;
+      for (const Item& item : group.items) {
+        if (const auto* path = std::get_if<Path>(&item))
+          cell = {path->points[0], path->points[2] - path->points[0]};
+        const auto* words = std::get_if<Words>(&item);
+        if (!words) continue;
+        ++texts;
+        const double right = words->at.x + width_mm(words->text, words->size_mm, words->bold);
+        EXPECT_GT(words->at.x, cell.corner.x);
+        EXPECT_LT(right, cell.corner.x + cell.size.x) << words->text;
+        EXPECT_GT(words->at.y - words->size_mm, cell.corner.y - 0.3);
+        EXPECT_LT(words->at.y, cell.corner.y + cell.size.y);
+      }
+      EXPECT_GE(texts, 22);
+      const Box whole = box_of(group);
+      EXPECT_NEAR(whole.size.y, block_height_mm(shape), 1e-9);
+      EXPECT_NEAR(whole.size.x, 128, 1e-9);
+    }
+  EXPECT_EQ(fitted("short", 3, false, 100, 1), std::vector<std::string>{"short"});
+  const auto cut = fitted("some words that are too long", 3, false, 20, 1);
+  ASSERT_EQ(cut.size(), 1u);
+  EXPECT_TRUE(cut[0].ends_with(" …"));
+  EXPECT_LE(width_mm(cut[0], 3, false), 20);
+  EXPECT_EQ(cut[0].find("…"), cut[0].rfind("…"));
 }
 
 TEST(SheetLayout, AListOfTheLegendStaysTogetherOrHasItsTitleInEachColumn) {

@@ -3839,7 +3839,7 @@ export interface FrameRequest {
   format?: "jpeg" | "png";
 }
 
-/** Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. `areas`, `legend`, `title`, `caption`, `credit`, `looks`, `light`, `provisional` and `continued` then have no effect, so the same request can create files of several formats. Not with `rollout`. */
+/** Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. `areas`, `legend`, `title`, `caption`, `credit`, `title_block`, `looks`, `light`, `provisional` and `continued` then have no effect, so the same request can create files of several formats. Not with `rollout`. */
 export type FigureFormat = "png" | "tiff" | "svg" | "pdf" | "dxf";
 
 /** Direction of a figure, relative to the model's up. In the view from the top, the front of the model is at the bottom. For a model in map coordinates with z up, this is the plan, with y pointing up. */
@@ -3928,6 +3928,55 @@ export interface FigureRollout {
   relief?: boolean;
 }
 
+/** Names of the fields of a title block. */
+export interface FigureTitleBlockLabels {
+  /** Default: "Organization". */
+  organization?: string;
+  /** Default: "Project". */
+  project?: string;
+  /** Default: "Object". */
+  object?: string;
+  /** Default: "Title". */
+  title?: string;
+  /** Default: "Author". */
+  author?: string;
+  /** Default: "Checked by". */
+  checked_by?: string;
+  /** Default: "Date". */
+  date?: string;
+  /** Default: "Status". */
+  status?: string;
+  /** Default: "Scale". */
+  scale?: string;
+  /** Default: "Document number". */
+  number?: string;
+  /** Default: "Sheet". */
+  sheet?: string;
+}
+
+/** Title block of a figure. The texts of a title block after ISO 7200, at the bottom right of the sheet. It also contains the scale and the `title` of the figure. Texts that are too long for their field end with “…”. An empty text leaves its field empty. */
+export interface FigureTitleBlock {
+  /** The legal owner of the drawing. Default: the owner of the model. */
+  organization?: string;
+  /** Default: the name of the project. */
+  project?: string;
+  /** Default: the name of the model, and its inventory number. */
+  object?: string;
+  /** Default: the name of the user. */
+  author?: string;
+  /** The person who checked and approved the drawing. */
+  checked_by?: string;
+  /** Default: today in UTC, such as 2026-05-31. */
+  date?: string;
+  /** For example, draft. */
+  status?: string;
+  /** The number of the document in the numbering of the organization. */
+  number?: string;
+  /** The number of the sheet, such as 2/5. Default: "1/1". */
+  sheet?: string;
+  labels?: FigureTitleBlockLabels;
+}
+
 /** Figure to scale. A drawing to scale without perspective, on a sheet with a scale bar, legend and caption. A saved view, or the camera, layers, surface images and light, set its content. They also set the direction if no other member sets it. Without these members, the figure shows the default layers of the model from the top. */
 export interface FigureRequest {
   /** Slug or id of a saved view. */
@@ -3963,11 +4012,13 @@ export interface FigureRequest {
   areas?: "pixels" | "outlines";
   /** With `areas: outlines` and in DXF files: the largest distance on paper between an outline and the border of the area, without the half cell of the grid (at most 0.05 mm on A4). Pieces smaller than a square whose sides are twice as long become a part of their neighbor. Default: 0.1. */
   tolerance_mm?: number;
-  /** Default: the name of the model. */
+  /** Default: the name of the model. With `title_block`, the title is in the block, and the default is the name of the saved view, if any. */
   title?: string;
   caption?: string;
   /** Default: the credit of the model. */
   credit?: string;
+  /** Adds a frame around the sheet and a title block. Without this member, the sheet has neither. */
+  title_block?: FigureTitleBlock;
   /** Whether the figure has a legend of the layers and classes in the drawing. The legend omits classes that are outside the drawing or completely below an opaque layer. Default: true. */
   legend?: boolean;
   /** Text in the legend for the hatch of edits that wait for review. Default: "Provisional". */

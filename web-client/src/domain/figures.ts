@@ -10,6 +10,7 @@ import type {
   FigureRollout,
   Point3,
 } from "../core/protocol.gen";
+import { keptBlockTexts, titleBlock, type BlockTexts, type KeptBlockTexts } from "./figure-block";
 import type { ViewContent } from "./views";
 
 export const kDirections: readonly FigureDirection[] = [
@@ -56,6 +57,8 @@ export interface FigureChoices {
   areas: Areas;
   tolerance_mm: number;
   legend: boolean;
+  title_block: boolean;
+  block_texts: KeptBlockTexts;
 }
 
 /** Texts on the sheet. If a text is empty, the server uses its default. */
@@ -84,6 +87,8 @@ export const usualFigure = (): FigureChoices => ({
   areas: "pixels",
   tolerance_mm: 0.1,
   legend: true,
+  title_block: false,
+  block_texts: keptBlockTexts(null),
 });
 
 export const isScale = (value: unknown): value is number =>
@@ -112,6 +117,8 @@ export function figureChoices(kept: unknown): FigureChoices {
     areas: oneOf(known["areas"], kAreas, usual.areas),
     tolerance_mm: oneOf(known["tolerance_mm"], kTolerances, usual.tolerance_mm),
     legend: oneOf(known["legend"], [true, false], usual.legend),
+    title_block: oneOf(known["title_block"], [true, false], usual.title_block),
+    block_texts: keptBlockTexts(known["block_texts"]),
   };
 }
 
@@ -124,7 +131,10 @@ export const hasAreas = ({ from, format }: FigureChoices): boolean =>
 export const hasOutlines = (choices: FigureChoices): boolean =>
   choices.format === "dxf" || (hasAreas(choices) && choices.areas === "outlines");
 
-/** Builds the request. Returns null without the required face or rollout. */
+/**
+ * Builds the request. Returns null without the required face or rollout. Without `block`, the sheet
+ * has no title block.
+ */
 export function figureRequest(
   shown: FigureShown,
   chosen: FigureChoices,
@@ -132,8 +142,9 @@ export function figureRequest(
   face: Face | null,
   labels: FigureLabels | null,
   rollout: FigureRollout | null = null,
+  block: BlockTexts | null = null,
 ): FigureRequest | null {
-  const { from, scale, orientation, areas, tolerance_mm: tolerance, legend, ...choices } = chosen;
+  const { from, scale, paper, orientation, dpi, format, legend } = chosen;
   const content = contentOf(shown, from, face, labels, rollout);
   if (!content) return null;
   const written = Object.entries(words).flatMap(([name, text]) =>
@@ -141,12 +152,15 @@ export function figureRequest(
   );
   return {
     ...content,
-    ...choices,
+    paper,
+    dpi,
+    format,
     ...(hasSheet(chosen) ? { legend } : {}),
+    ...(hasSheet(chosen) && block ? { title_block: titleBlock(block) } : {}),
     ...(scale === null ? {} : { scale }),
     ...(orientation === null ? {} : { orientation }),
-    ...(hasAreas(chosen) && areas === "outlines" ? { areas } : {}),
-    ...(hasOutlines(chosen) ? { tolerance_mm: tolerance } : {}),
+    ...(hasAreas(chosen) && chosen.areas === "outlines" ? { areas: chosen.areas } : {}),
+    ...(hasOutlines(chosen) ? { tolerance_mm: chosen.tolerance_mm } : {}),
     ...(Object.fromEntries(written) as Partial<FigureWords>),
   };
 }

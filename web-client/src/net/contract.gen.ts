@@ -2985,6 +2985,10 @@ export interface components {
         FigureRequest: wire.FigureRequest;
         /** Rollout in a figure */
         FigureRollout: wire.FigureRollout;
+        /** Title block of a figure */
+        FigureTitleBlock: wire.FigureTitleBlock;
+        /** Names of the fields of a title block */
+        FigureTitleBlockLabels: wire.FigureTitleBlockLabels;
         /** Request for a rendered image */
         FrameRequest: wire.FrameRequest;
         /** Group of users */

@@ -4866,6 +4866,64 @@ nlohmann::json to_json(const FigureRollout& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, FigureTitleBlockLabels& value) {
+  read_optional_member(json, "organization", value.organization);
+  read_optional_member(json, "project", value.project);
+  read_optional_member(json, "object", value.object);
+  read_optional_member(json, "title", value.title);
+  read_optional_member(json, "author", value.author);
+  read_optional_member(json, "checked_by", value.checked_by);
+  read_optional_member(json, "date", value.date);
+  read_optional_member(json, "status", value.status);
+  read_optional_member(json, "scale", value.scale);
+  read_optional_member(json, "number", value.number);
+  read_optional_member(json, "sheet", value.sheet);
+}
+
+nlohmann::json to_json(const FigureTitleBlockLabels& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "organization", value.organization);
+  write_member(json, "project", value.project);
+  write_member(json, "object", value.object);
+  write_member(json, "title", value.title);
+  write_member(json, "author", value.author);
+  write_member(json, "checked_by", value.checked_by);
+  write_member(json, "date", value.date);
+  write_member(json, "status", value.status);
+  write_member(json, "scale", value.scale);
+  write_member(json, "number", value.number);
+  write_member(json, "sheet", value.sheet);
+  return json;
+}
+
+void read(const nlohmann::json& json, FigureTitleBlock& value) {
+  read_optional_member(json, "organization", value.organization);
+  read_optional_member(json, "project", value.project);
+  read_optional_member(json, "object", value.object);
+  read_optional_member(json, "author", value.author);
+  read_optional_member(json, "checked_by", value.checked_by);
+  read_optional_member(json, "date", value.date);
+  read_optional_member(json, "status", value.status);
+  read_optional_member(json, "number", value.number);
+  read_optional_member(json, "sheet", value.sheet);
+  read_optional_member(json, "labels", value.labels);
+}
+
+nlohmann::json to_json(const FigureTitleBlock& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "organization", value.organization);
+  write_optional_member(json, "project", value.project);
+  write_optional_member(json, "object", value.object);
+  write_optional_member(json, "author", value.author);
+  write_optional_member(json, "checked_by", value.checked_by);
+  write_optional_member(json, "date", value.date);
+  write_optional_member(json, "status", value.status);
+  write_optional_member(json, "number", value.number);
+  write_member(json, "sheet", value.sheet);
+  write_optional_member(json, "labels", value.labels);
+  return json;
+}
+
 void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "view", value.view);
   read_optional_member(json, "camera", value.camera);
@@ -4887,6 +4945,7 @@ void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "title", value.title);
   read_optional_member(json, "caption", value.caption);
   read_optional_member(json, "credit", value.credit);
+  read_optional_member(json, "title_block", value.title_block);
   read_optional_member(json, "legend", value.legend);
   read_optional_member(json, "provisional", value.provisional);
   read_optional_member(json, "continued", value.continued);
@@ -4915,6 +4974,7 @@ nlohmann::json to_json(const FigureRequest& value) {
   write_optional_member(json, "title", value.title);
   write_optional_member(json, "caption", value.caption);
   write_optional_member(json, "credit", value.credit);
+  write_optional_member(json, "title_block", value.title_block);
   write_member(json, "legend", value.legend);
   write_member(json, "provisional", value.provisional);
   write_member(json, "continued", value.continued);

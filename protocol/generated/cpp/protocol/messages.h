@@ -397,6 +397,8 @@ enum class Schema {
   RolloutRequest,
   RolloutSheet,
   FigureRollout,
+  FigureTitleBlockLabels,
+  FigureTitleBlock,
   FigureRequest,
   ReportFormat,
   ReportLanguage,
@@ -433,7 +435,7 @@ enum class Schema {
   UnrolledLine,
   Unrolled,
 };
-constexpr int kSchemaCount = 407;
+constexpr int kSchemaCount = 409;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -3778,7 +3780,7 @@ Result<void> check(const FrameRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
 
-// Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. `areas`, `legend`, `title`, `caption`, `credit`, `looks`, `light`, `provisional` and `continued` then have no effect, so the same request can create files of several formats. Not with `rollout`.
+// Kind of file. In SVG and PDF files, the texts, legend, scale bar and north arrow can be edited. `dxf` is a drawing for CAD programs in millimeters on the object, without sheet, legend and picture. `areas`, `legend`, `title`, `caption`, `credit`, `title_block`, `looks`, `light`, `provisional` and `continued` then have no effect, so the same request can create files of several formats. Not with `rollout`.
 enum class FigureFormat { png, tiff, svg, pdf, dxf };
 std::string_view name(FigureFormat value);
 void read(const nlohmann::json& json, FigureFormat& value);
@@ -3854,6 +3856,47 @@ nlohmann::json to_json(const FigureRollout& value);
 template <>
 inline constexpr Schema kSchemaOf<FigureRollout> = Schema::FigureRollout;
 
+// Names of the fields of a title block.
+struct FigureTitleBlockLabels {
+  std::string organization = "Organization";
+  std::string project = "Project";
+  std::string object = "Object";
+  std::string title = "Title";
+  std::string author = "Author";
+  std::string checked_by = "Checked by";
+  std::string date = "Date";
+  std::string status = "Status";
+  std::string scale = "Scale";
+  std::string number = "Document number";
+  std::string sheet = "Sheet";
+  bool operator==(const FigureTitleBlockLabels&) const = default;
+};
+void read(const nlohmann::json& json, FigureTitleBlockLabels& value);
+nlohmann::json to_json(const FigureTitleBlockLabels& value);
+template <>
+inline constexpr Schema kSchemaOf<FigureTitleBlockLabels> = Schema::FigureTitleBlockLabels;
+
+// Title block of a figure. The texts of a title block after ISO 7200, at the bottom right of the sheet. It also contains the scale and the `title` of the figure. Texts that are too long for their field end with “…”. An empty text leaves its field empty.
+struct FigureTitleBlock {
+  // The legal owner of the drawing. Default: the owner of the model.
+  std::optional<std::string> organization;
+  std::optional<std::string> project;  // Default: the name of the project.
+  std::optional<std::string> object;  // Default: the name of the model, and its inventory number.
+  std::optional<std::string> author;  // Default: the name of the user.
+  std::optional<std::string> checked_by;  // The person who checked and approved the drawing.
+  std::optional<std::string> date;  // Default: today in UTC, such as 2026-05-31.
+  std::optional<std::string> status;  // For example, draft.
+  // The number of the document in the numbering of the organization.
+  std::optional<std::string> number;
+  std::string sheet = "1/1";  // The number of the sheet, such as 2/5.
+  std::optional<FigureTitleBlockLabels> labels;
+  bool operator==(const FigureTitleBlock&) const = default;
+};
+void read(const nlohmann::json& json, FigureTitleBlock& value);
+nlohmann::json to_json(const FigureTitleBlock& value);
+template <>
+inline constexpr Schema kSchemaOf<FigureTitleBlock> = Schema::FigureTitleBlock;
+
 enum class FigureRequestPaper { a5, a4, a3 };
 std::string_view name(FigureRequestPaper value);
 void read(const nlohmann::json& json, FigureRequestPaper& value);
@@ -3911,9 +3954,13 @@ struct FigureRequest {
   // smaller than a square whose sides are twice as long become a part of their neighbor. Default:
   // 0.1.
   std::optional<double> tolerance_mm;
-  std::optional<std::string> title;  // Default: the name of the model.
+  // Default: the name of the model. With `title_block`, the title is in the block, and the default
+  // is the name of the saved view, if any.
+  std::optional<std::string> title;
   std::optional<std::string> caption;
   std::optional<std::string> credit;  // Default: the credit of the model.
+  // Adds a frame around the sheet and a title block. Without this member, the sheet has neither.
+  std::optional<FigureTitleBlock> title_block;
   // Whether the figure has a legend of the layers and classes in the drawing. The legend omits
   // classes that are outside the drawing or completely below an opaque layer.
   bool legend = true;

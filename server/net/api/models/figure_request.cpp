@@ -1,5 +1,8 @@
 #include "net/api/models/figure_request.h"
 
+#include <chrono>
+
+#include "core/text/timestamp.h"
 #include "domain/layers/layer.h"
 #include "domain/scene/model.h"
 #include "domain/tables/table.h"
@@ -7,12 +10,14 @@
 #include "net/api/models/rollout_fit.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/at_field.h"
+#include "net/serialization/people_serialization.h"
 #include "net/serialization/view_serialization.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/room.h"
 #include "room/view_settings.h"
 #include "store/content/named_parts.h"
+#include "store/content/projects.h"
 #include "store/store.h"
 #include "store/tables/tables.h"
 
@@ -31,10 +36,11 @@ static_assert(
     static_cast<int>(protocol::FigureFormat::pdf) == static_cast<int>(figure::Format::pdf) &&
     static_cast<int>(protocol::FigureFormat::dxf) == static_cast<int>(figure::Format::dxf));
 
-// Copies the shown layers and images to `figure`. Returns the camera, if there is one.
+// Copies the shown layers and images to `figure`, and the name of a saved view to `view_name`.
+// Returns the camera, if there is one.
 Result<std::optional<Camera>> read_shown(const RouteContext& context, const Request& request,
-                                         const protocol::FigureRequest& body,
-                                         FigureRequest& figure) {
+                                         const protocol::FigureRequest& body, FigureRequest& figure,
+                                         std::string& view_name) {
   const room::Room& room = *figure.room;
   if (!body.view) {
     if (body.camera) STRATA_TRY(validate(*body.camera));
@@ -54,6 +60,7 @@ Result<std::optional<Camera>> read_shown(const RouteContext& context, const Requ
   const auto saved = STRATA_TRY(as_view_create(context, request, *view, room));
   auto shown = STRATA_TRY(shown_settings(room, saved));
   figure.shown.shown = std::move(shown);
+  view_name = saved.name;
   return std::optional<Camera>(saved.camera);
 }
 
@@ -145,6 +152,34 @@ Result<void> read_areas(const protocol::FigureRequest& body, FigureRequest& figu
   return {};
 }
 
+// Returns the title block without its scale. Texts that the body does not have come from the model,
+// its project and the user.
+Result<figure::TitleBlock> title_block(const RouteContext& context, const Request& request,
+                                       const Model& model, const std::string& title,
+                                       const protocol::FigureTitleBlock& body) {
+  const auto project = STRATA_TRY(context.store.projects().find(to_string(model.project_id)));
+  const auto labels = body.labels.value_or(protocol::FigureTitleBlockLabels{});
+  const std::string object =
+      model.name + (model.inventory_number.empty() ? "" : " (" + model.inventory_number + ")");
+  constexpr std::size_t kDay = 10;  // length of YYYY-MM-DD
+  figure::TitleBlock block;
+  block.organization = {labels.organization, body.organization.value_or(model.owner)};
+  block.project = {labels.project, body.project.value_or(project.name)};
+  block.object = {labels.object, body.object.value_or(object)};
+  block.title = {labels.title, title};
+  block.author = {labels.author,
+                  body.author ? *body.author : written_name(context.store, request.user())};
+  block.checked_by = {labels.checked_by, body.checked_by.value_or("")};
+  block.date = {labels.date, body.date
+                                 ? *body.date
+                                 : utc_text(std::chrono::system_clock::now()).substr(0, kDay)};
+  block.status = {labels.status, body.status.value_or("")};
+  block.scale = {labels.scale, ""};
+  block.number = {labels.number, body.number.value_or("")};
+  block.sheet = {labels.sheet, body.sheet};
+  return block;
+}
+
 Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& body,
                          FigureRequest& figure) {
   const auto layer = figure.room->layers().find(protocol::to_ref(body.layer));
@@ -184,7 +219,8 @@ Result<FigureRequest> figure_request(const RouteContext& context, const Request&
   FigureRequest figure;
   figure.room = std::move(room);
   figure.role = request.role();
-  const auto camera = STRATA_TRY(read_shown(context, request, body, figure));
+  std::string view_name;  // empty without a saved view
+  const auto camera = STRATA_TRY(read_shown(context, request, body, figure, view_name));
   if (body.rollout)
     STRATA_TRY(read_unrolled(body, figure));
   else
@@ -223,6 +259,11 @@ Result<FigureRequest> figure_request(const RouteContext& context, const Request&
   if (has_sheet)
     figure.captions = {body.title.value_or(model.name), body.caption.value_or(""),
                        body.credit.value_or(model.credit), body.continued};
+  if (has_sheet && body.title_block) {
+    const auto block = STRATA_TRY(
+        title_block(context, request, model, body.title.value_or(view_name), *body.title_block));
+    figure.captions.block = block;
+  }
   figure.waiting_label = body.provisional;
   return figure;
 }

@@ -8,11 +8,11 @@
 #include "net/api/addressed.h"
 #include "net/api/models/figure_request.h"
 #include "net/serialization/at_field.h"
+#include "net/serialization/people_serialization.h"
 #include "room/edits.h"
 #include "room/layers.h"
 #include "room/room.h"
 #include "store/content/named_parts.h"
-#include "store/people/accounts.h"
 #include "store/store.h"
 #include "store/tables/tables.h"
 
@@ -172,12 +172,7 @@ Result<ReportRequest> read_report_request(const RouteContext& context, const Req
       static_cast<app::ReportLanguage>(body.language.value_or(protocol::ReportLanguage::en));
   report.title = body.title.value_or(report.room->model().name);
   report.subject = body.subject.value_or("");
-  if (body.author) {
-    report.author = *body.author;
-  } else {
-    const auto person = context.store.accounts().find(request.user());
-    report.author = person && !person->full_name.empty() ? person->full_name : request.user();
-  }
+  report.author = body.author ? *body.author : written_name(context.store, request.user());
   for (const auto& field : body.fields.value_or(std::vector<protocol::ReportField>{}))
     report.fields.emplace_back(field.label, field.value);
   if (body.logo) STRATA_TRY(read_logo(*body.logo, report));

@@ -26,6 +26,7 @@ import {
   type FigureFrom,
   type FigureWords,
 } from "../../domain/figures";
+import type { BlockField, BlockTexts } from "../../domain/figure-block";
 import { readNumber, typedNumber } from "../../core/locale";
 import type { FigureRequest, View } from "../../core/protocol.gen";
 import type { ProblemBody } from "../../core/types";
@@ -41,6 +42,7 @@ import { hasKeyboard } from "../../ui/keyboard";
 import type { ModelSession } from "../../session/model-session";
 import { fieldProblem, typingProblem, type FieldProblem } from "./figure-problems";
 import { wordFields } from "./figure-words";
+import { blockFields, blockStyles, withBlockWords } from "./figure-block-fields";
 import { rolloutFields, rolloutStyles } from "./rollout-fields";
 import { kNewRollout, rolloutOf, wrongSurface, type RolloutInput } from "./rollout-request";
 import { labelFields, labelsOf, type LabelChoice } from "./figure-labels";
@@ -85,6 +87,7 @@ export class StrataFigureDialog extends LitElement {
     formatChoiceStyles,
     awaitedFileStyles,
     figureStyles,
+    blockStyles,
     rolloutStyles,
   ];
 
@@ -127,14 +130,19 @@ export class StrataFigureDialog extends LitElement {
       : { ...session.views.content(), ...(this._camera ? { camera: this._camera } : {}) };
     const rollout = model && rolloutOf(this._rollout, model);
     const labels = labelsOf(session);
-    const request = figureRequest(shown, this._choices, written, face, labels, rollout);
+    const block = this._choices.title_block ? this.block : null;
+    const request = figureRequest(shown, this._choices, written, face, labels, rollout, block);
     return (
       request && {
-        ...request,
+        ...withBlockWords(request),
         provisional: texts.figures.provisional,
         continued: texts.figures.continued,
       }
     );
+  }
+
+  private get block(): BlockTexts {
+    return { ...this.session.figures.draft.block, ...this._choices.block_texts };
   }
 
   // ── rendering ──────────────────────────────────────────────────────────────────────────────────
@@ -146,7 +154,7 @@ export class StrataFigureDialog extends LitElement {
       <div class="editor">
         <form id="figure" class="fields" novalidate @submit=${this.onSubmit}>
           ${this.direction()} ${this.scale()} ${this.sheet()} ${hasSheet(this._choices) ? this.resolution() : nothing} ${this.format()} ${this.areas()}
-          ${hasSheet(this._choices) ? html`${this.written()} ${this.legend()}` : nothing} ${this.labels()}
+          ${hasSheet(this._choices) ? html`${this.written()} ${this.titleBlock()} ${this.legend()}` : nothing} ${this.labels()}
         </form>
         <div class="sheet">
           ${this.warning()}
@@ -336,6 +344,15 @@ export class StrataFigureDialog extends LitElement {
     });
   }
 
+  private titleBlock(): TemplateResult {
+    return blockFields(this.session, this.block, {
+      on: this._choices.title_block,
+      problem: this.problemOf("title_block"),
+      turn: (on) => this.choose({ title_block: on }),
+      write: (name, text) => this.writeBlock(name, text),
+    });
+  }
+
   private legend(): TemplateResult {
     return html`<div class="full group">
         <label class="check">
@@ -440,6 +457,16 @@ export class StrataFigureDialog extends LitElement {
     this.session.figures.draft.words = written;
     if (this._problem?.field === name) this._problem = null;
     this.requestUpdate();
+  }
+
+  private writeBlock(name: BlockField, text: string): void {
+    const { draft } = this.session.figures;
+    draft.block = { ...draft.block, [name]: text };
+    const { block_texts: kept } = this._choices;
+    this.choose({
+      title_block: true,
+      block_texts: name in kept ? { ...kept, [name]: text } : kept,
+    });
   }
 
   /** Sets the labels. If the choice has no column, the figure uses the first column. */

@@ -34,6 +34,7 @@ const kFields: readonly string[] = [
   "title",
   "caption",
   "credit",
+  "title_block",
   "labels",
 ];
 

@@ -2,6 +2,7 @@
 
 import { pageLocale } from "../../core/locale";
 import type { Api } from "../../net/api";
+import { emptyBlock, type BlockTexts } from "../../domain/figure-block";
 import type { Face, FigureWords } from "../../domain/figures";
 import type { FigureRequest } from "../../core/protocol.gen";
 import type { FileJobs } from "../../session/file-jobs";
@@ -17,7 +18,14 @@ export class Figures {
     labels: { layer: number; column: string } | null;
     face: Face | null;
     rollout: RolloutInput | null; // null before the first rollout
-  } = { words: { title: "", caption: "", credit: "" }, labels: null, face: null, rollout: null };
+    block: BlockTexts;
+  } = {
+    words: { title: "", caption: "", credit: "" },
+    labels: null,
+    face: null,
+    rollout: null,
+    block: emptyBlock(),
+  };
 
   constructor(
     private readonly _api: Api,

@@ -27,6 +27,8 @@ import {
   type FigureChoices,
   type FigureWords,
 } from "../../../src/domain/figures";
+import { emptyBlock } from "../../../src/domain/figure-block";
+import { withBlockWords } from "../../../src/features/figures/figure-block-fields";
 import { setLocale } from "../../../src/core/locale";
 import type { ViewContent } from "../../../src/domain/views";
 import { FaceTool } from "../../../src/features/figures/face-tool";
@@ -119,6 +121,11 @@ describe("choices that a browser kept", () => {
     areas: fc.constantFrom(...kAreas),
     tolerance_mm: fc.constantFrom(...kTolerances),
     legend: fc.boolean(),
+    title_block: fc.boolean(),
+    block_texts: fc.record({
+      organization: fc.string({ maxLength: 200 }),
+      author: fc.string({ maxLength: 200 }),
+    }),
   });
 
   it("come back", () => {
@@ -144,6 +151,8 @@ describe("choices that a browser kept", () => {
       areas: "lines",
       tolerance_mm: 0.07,
       legend: 1,
+      title_block: "yes",
+      block_texts: { organization: 5, author: "x".repeat(201) },
       more: true,
     };
     expect(figureChoices(kept)).toEqual(usualFigure());
@@ -186,6 +195,8 @@ describe("what is asked for", () => {
       areas: "outlines",
       tolerance_mm: 0.2,
       legend: false,
+      title_block: false,
+      block_texts: { organization: "Museum", author: "" },
     };
     const words = { title: "West wall ", caption: "After\ncleaning", credit: "Museum" };
     expect(figureRequest(shown, choices, words, face, { layer: 7, column: "name" })).toEqual({
@@ -276,6 +287,32 @@ describe("what is asked for", () => {
       expect(asked("dxf")).not.toHaveProperty(name);
     // the server's defaults would make the drawing smaller
     expect(previewRequest(asked("dxf"))).toMatchObject({ legend: false, title: "", credit: "" });
+  });
+
+  it("has the filled fields of a title block, and the direction as its usual title", () => {
+    const block = { ...emptyBlock(), author: " Ada Lovelace ", sheet: "2/5", status: "  " };
+    const asked = (chosen: Partial<FigureChoices>, written = unwritten) =>
+      withBlockWords(
+        figureRequest(
+          shown,
+          { ...usualFigure(), from: "front", ...chosen },
+          written,
+          null,
+          null,
+          null,
+          block,
+        )!,
+      );
+    const { labels, ...filled } = asked({}).title_block!;
+    expect(filled).toEqual({ author: "Ada Lovelace", sheet: "2/5" });
+    expect(labels).toEqual(texts.figures.block.fields);
+    expect(asked({}).title).toBe(texts.figures.froms.front);
+    expect(asked({}, { ...unwritten, title: "West wall" }).title).toBe("West wall");
+    expect(asked({ from: "camera" })).not.toHaveProperty("title");
+    expect(asked({ format: "dxf" })).not.toHaveProperty("title_block");
+    expect(previewRequest(asked({})).title_block).toEqual(asked({}).title_block);
+    const bare = figureRequest(shown, usualFigure(), unwritten, null, null)!;
+    expect(withBlockWords(bare)).toEqual(bare);
   });
 
   it("is the same sheet as a small picture for the preview", () => {
