@@ -149,11 +149,12 @@ void draw(cairo_t* context, const Mark& mark) {
   cairo_restore(context);
 }
 
-void draw_group(cairo_t* context, const Group& group, const Box& drawing) {
+void draw_group(cairo_t* context, const Group& group) {
   cairo_save(context);
-  if (group.in_drawing) {
+  if (group.clip) {
+    const auto& [corner, size] = *group.clip;
     cairo_new_path(context);
-    cairo_rectangle(context, drawing.corner.x, drawing.corner.y, drawing.size.x, drawing.size.y);
+    cairo_rectangle(context, corner.x, corner.y, size.x, size.y);
     cairo_clip(context);
   }
   if (group.opacity < 1) cairo_push_group(context);
@@ -161,7 +162,7 @@ void draw_group(cairo_t* context, const Group& group, const Box& drawing) {
     std::visit([&](const auto& each) { draw(context, each); }, item);
   for (const Area& area : group.areas) draw(context, area);
   for (const Mark& mark : group.marks) draw(context, mark);
-  for (const Group& part : group.parts) draw_group(context, part, drawing);
+  for (const Group& part : group.parts) draw_group(context, part);
   if (group.opacity < 1) {
     cairo_pop_group_to_source(context);
     cairo_paint_with_alpha(context, group.opacity);
@@ -172,7 +173,7 @@ void draw_group(cairo_t* context, const Group& group, const Box& drawing) {
 }  // namespace
 
 void draw_groups(cairo_t* context, const Sheet& sheet) {
-  for (const Group& group : sheet.groups) draw_group(context, group, sheet.drawing);
+  for (const Group& group : sheet.groups) draw_group(context, group);
 }
 
 }  // namespace strata::figure

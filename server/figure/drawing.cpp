@@ -98,13 +98,23 @@ std::optional<Extent> extent_of(std::span<const glm::dvec3> world, const Plane& 
   return extent;
 }
 
+std::span<const double> round_scales() {
+  static const std::vector<double> kScales = [] {
+    std::vector<double> scales;
+    for (double decade = 1; decade < 1e6; decade *= 10)
+      for (const double step : {1.0, 2.0, 2.5, 5.0}) scales.push_back(step * decade);
+    scales.push_back(1e6);
+    return scales;
+  }();
+  return kScales;
+}
+
 double fitting_scale(const glm::dvec2& size, const glm::dvec2& paper_mm, double metres_per_unit) {
   const glm::dvec2 life_mm = size * (metres_per_unit * 1000);
   const double needed = std::max(life_mm.x / paper_mm.x, life_mm.y / paper_mm.y);
-  for (double decade = 1; decade < 1e6; decade *= 10)
-    for (const double step : {1.0, 2.0, 2.5, 5.0})
-      if (step * decade >= needed) return step * decade;
-  return 1e6;
+  for (const double scale : round_scales())
+    if (scale >= needed) return scale;
+  return round_scales().back();
 }
 
 std::vector<Part> parts_of(const Drawing& drawing, int side) {

@@ -41,8 +41,9 @@ struct Extent {
 std::optional<Extent> extent_of(std::span<const glm::dvec3> world, const Plane& plane,
                                 std::span<const glm::dvec4> section);
 
-// Returns the first scale of 1, 2, 2.5, 5, 10, 20, 25, 50 … at which `size` (in model units) fits
-// on the paper. 1 is life size.
+// The scales 1, 2, 2.5, 5, 10, 20, 25, 50 … 1 000 000, ascending. 1 is life size.
+std::span<const double> round_scales();
+// Returns the first round scale at which `size` (in model units) fits on the paper.
 double fitting_scale(const glm::dvec2& size, const glm::dvec2& paper_mm, double metres_per_unit);
 
 // A drawing. A pixel is `25.4 / dpi` mm on paper, and `scale` times as long in the world.

@@ -22,19 +22,19 @@ std::string plain_number(double value) {
   return {digits.data(), end.ptr};
 }
 
-Group group_of(const char* content, const LayerVectors& layer) {
+Group group_of(const char* content, const LayerVectors& layer, const Box& drawing) {
   Group group;
   group.id = content + ("-" + layer.id);
   group.name = layer.name;
   group.opacity = layer.opacity;
-  group.in_drawing = true;
+  group.clip = drawing;
   return group;
 }
 
 }  // namespace
 
-Group area_group(LayerVectors layer) {
-  Group group = group_of("areas", layer);
+Group area_group(LayerVectors layer, const Box& drawing) {
+  Group group = group_of("areas", layer, drawing);
   for (ClassArea& of_class : layer.areas) {
     Area area{{}, of_class.color, of_class.pattern, of_class.angle, of_class.spacing_mm};
     for (OutlinePolygon& polygon : of_class.polygons)
@@ -47,8 +47,8 @@ Group area_group(LayerVectors layer) {
   return group;
 }
 
-Group mark_group(LayerVectors layer) {
-  Group group = group_of("marks", layer);
+Group mark_group(LayerVectors layer, const Box& drawing) {
+  Group group = group_of("marks", layer, drawing);
   for (RecordMark& mark : layer.marks) {
     const double width = mark.points.size() > 1 ? kLine_mm : kPoint_mm;
     group.marks.push_back({std::move(mark.points), mark.color, width, kCasing_mm});

@@ -35,8 +35,9 @@ struct LayerVectors {
 };
 
 // Returns the areas as a group with a part for each class, and the marks as a group. Lines and
-// points have the widths that they have in pictures.
-Group area_group(LayerVectors layer);
-Group mark_group(LayerVectors layer);
+// points have the widths that they have in pictures. Only the parts in the box of the drawing are
+// visible.
+Group area_group(LayerVectors layer, const Box& drawing);
+Group mark_group(LayerVectors layer, const Box& drawing);
 
 }  // namespace strata::figure

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/text/number_text.h"
+#include "figure/drawing.h"
 #include "figure/paper.h"
 #include "figure/pattern.h"
+#include "figure/scale_bar.h"
 #include "figure/text.h"
 
 namespace strata::figure {
@@ -18,13 +19,11 @@ constexpr double kLine = 1.45;
 constexpr double kFrame = 0.2, kThin = 0.12;  // line widths
 constexpr int kMaxTitleLines = 2, kMaxCaptionLines = 8, kMaxCreditLines = 3;
 constexpr double kScaleWidth = 80, kScaleHeight = 16, kMinTextWidth = 40;
+// Heights of the title and the scale below a view, with and without a scale bar.
+constexpr double kCaptionGap = 1, kCaption = 12.5, kCaptionWithBar = 16.5;
 constexpr double kSheetFrame = 0.5, kFramePadding = 3;  // of the frame around the sheet
 constexpr double kLegendColumn = 56, kSwatchWidth = 6, kSwatchHeight = 3, kEntry = 4.2,
                  kTitleGap = 1.2;
-
-Path rectangle(const glm::dvec2& corner, const glm::dvec2& size) {
-  return {{corner, corner + glm::dvec2(size.x, 0), corner + size, corner + glm::dvec2(0, size.y)}};
-}
 
 // Returns the part of a line within a box, or nothing if the line misses the box.
 std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& through,
@@ -55,7 +54,7 @@ Rgba on_paper(const Rgba& ink, double share) {
 
 void add_filled(std::vector<Item>& items, const glm::dvec2& corner, const glm::dvec2& size,
                 const Rgba& ink) {
-  Path path = rectangle(corner, size);
+  Path path = outline_of({corner, size});
   path.fill = ink;
   items.push_back(std::move(path));
 }
@@ -63,8 +62,7 @@ void add_filled(std::vector<Item>& items, const glm::dvec2& corner, const glm::d
 // Draws opaque colors, as in the page's legend and in the drawing.
 void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& entry) {
   const Rgba ink{entry.color[0], entry.color[1], entry.color[2], 255};
-  Path frame = rectangle(box.corner, box.size);
-  frame.stroke_mm = kThin;
+  Path frame = outline_of(box, kThin);
   if (entry.pattern == Pattern::solid) frame.fill = ink;
   const bool has_lines = entry.pattern == Pattern::hatch || entry.pattern == Pattern::dots;
   if (has_lines && !entry.bare) add_filled(items, box.corner, box.size, on_paper(ink, kGround));
@@ -243,7 +241,7 @@ void add_row(std::vector<Item>& items, const Row& row, const glm::dvec2& at, dou
         // Slightly wider bars leave no visible gaps.
         const double wide = i + 1 < row.legend->ramp.size() ? step * 1.2 : step;
         Path bar =
-            rectangle({at.x + static_cast<double>(i) * step, at.y + 0.5}, {wide, kSwatchHeight});
+            outline_of({{at.x + static_cast<double>(i) * step, at.y + 0.5}, {wide, kSwatchHeight}});
         bar.fill = Rgba{color[0], color[1], color[2], 255};
         items.push_back(std::move(bar));
       }
@@ -311,36 +309,42 @@ Space space_for(const glm::dvec2& paper, double margin, bool has_block) {
   return space;
 }
 
-Group bar_group(const ScaleBar& bar, double scale, const glm::dvec2& right_bottom) {
-  Group group{"scale-bar", {}};
-  constexpr double kBar = 2;
-  const glm::dvec2 left(right_bottom.x - bar.length_mm, right_bottom.y - kBar - kSmall - 1);
-  const double step_mm = bar.length_mm / bar.steps;
-  for (int i = 0; i < bar.steps; ++i) {
-    Path step = rectangle(left + glm::dvec2(i * step_mm, 0), {step_mm, kBar});
-    step.fill = i % 2 == 0 ? Rgba{0, 0, 0, 255} : Rgba{255, 255, 255, 255};
-    step.stroke_mm = kThin;
-    group.items.push_back(std::move(step));
+// Returns the title and the scale below a view, and its own scale bar and arrow.
+std::vector<Group> caption_groups(const PlacedView& view, std::size_t number, bool has_bar) {
+  constexpr double kArrow = 6, kArrowRoom = 12, kLineHeight = kText * kLine;
+  const Box& box = view.place.box;
+  const std::string suffix = "-" + std::to_string(number);
+  std::vector<Group> groups;
+  Group& words = groups.emplace_back(Group{"view" + suffix, {}});
+  const double width = box.size.x - (view.north ? kArrowRoom : 0);
+  glm::dvec2 at = box.corner + glm::dvec2(0, box.size.y + kCaptionGap);
+  for (const std::string& line : fitted(view.title, kText, true, width, 1))
+    words.items.push_back(Words{{at.x, at.y + kText}, line, kText, true});
+  at.y += kLineHeight;
+  if (!has_bar)
+    words.items.push_back(Words{{at.x, at.y + kText}, scale_text(view.place.scale), kText});
+  if (has_bar) {
+    const double room = std::max(1.0, std::min(width, kScaleWidth) - 2 * kBarOverhang_mm);
+    groups.push_back(bar_group("scale-bar" + suffix, scale_bar(view.place.scale, room),
+                               view.place.scale, {at.x + 1, at.y + kBarHeight_mm}));
   }
-  for (int i = 0; i <= bar.steps; ++i) {
-    std::string text = short_number(i * bar.step);
-    if (i == bar.steps) text += " " + bar.unit;
-    group.items.push_back(Words{
-        {left.x + i * step_mm, right_bottom.y}, std::move(text), kSmall, false, Anchor::middle});
-  }
-  group.items.push_back(Words{
-      {left.x + bar.length_mm / 2, left.y - 1.4}, scale_text(scale), kText, true, Anchor::middle});
-  return group;
+  if (view.north)
+    groups.push_back(arrow_group(
+        "north" + suffix, *view.north,
+        box.corner + box.size + glm::dvec2(-kArrowRoom / 2, kCaption / 2 + 0.2), kArrow));
+  return groups;
 }
 
-Group arrow_group(const glm::dvec2& north, const glm::dvec2& middle) {
-  constexpr double kLength = 11, kHalfWidth = 2.2;
-  const glm::dvec2 tip = middle + north * (kLength / 2), tail = middle - north * (kLength / 2);
-  const glm::dvec2 side(-north.y * kHalfWidth, north.x * kHalfWidth), notch = tail + north * 2.2;
-  Path dark{{tip, tail + side, notch}, true, Rgba{0, 0, 0, 255}, kThin};
-  Path light{{tip, tail - side, notch}, true, Rgba{255, 255, 255, 255}, kThin};
-  const glm::dvec2 letter = tip + north * 2.2 + glm::dvec2(0, kText * 0.36);
-  return {"north", {dark, light, Words{letter, "N", kText, true, Anchor::middle}}};
+// Returns the different scales of the views.
+std::string scales_text(const std::vector<PlacedView>& views) {
+  std::vector<std::string> scales;
+  for (const PlacedView& view : views) {
+    std::string scale = scale_text(view.place.scale);
+    if (std::ranges::find(scales, scale) == scales.end()) scales.push_back(std::move(scale));
+  }
+  std::string text;
+  for (const std::string& scale : scales) text += (text.empty() ? "" : ", ") + scale;
+  return text;
 }
 
 }  // namespace
@@ -350,34 +354,6 @@ glm::dvec2 paper_mm(Paper paper, bool landscape) {
                               : paper == Paper::a4 ? glm::dvec2(210, 297)
                                                    : glm::dvec2(148, 210);
   return landscape ? glm::dvec2(portrait.y, portrait.x) : portrait;
-}
-
-std::string scale_text(double scale) {
-  // Groups the digits of large whole numbers by three. short_number has only six digits.
-  const auto number = [](double value) {
-    if (value < 10'000 || value != std::floor(value)) return short_number(value);
-    std::string digits = std::to_string(static_cast<std::int64_t>(value));
-    for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
-      digits.insert(static_cast<std::size_t>(at), "\u202f");
-    return digits;
-  };
-  return scale >= 1 ? "1 : " + number(scale) : number(1 / scale) + " : 1";
-}
-
-ScaleBar scale_bar(double scale, double widest_mm) {
-  // The length of the bar is 1, 2 or 5 times a power of ten, in millimeters in the world. The
-  // longest bar that fits is used.
-  const double most = widest_mm * scale;
-  const double decade = std::pow(10, std::floor(std::log10(most)));
-  const int digit = most >= 5 * decade ? 5 : most >= 2 * decade ? 2 : 1;
-  const double length = digit * decade;
-  ScaleBar bar;
-  bar.length_mm = length / scale;
-  bar.steps = digit == 1 ? 4 : digit == 2 ? 4 : 5;
-  const bool km = length >= 2e6, m = length >= 2e3, cm = length >= 20;
-  bar.unit = km ? "km" : m ? "m" : cm ? "cm" : "mm";
-  bar.step = length / bar.steps / (km ? 1e6 : m ? 1e3 : cm ? 10 : 1);
-  return bar;
 }
 
 SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
@@ -427,44 +403,86 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
       {in_mm(std::round(in_pixels(area.corner.x))), in_mm(std::round(in_pixels(area.corner.y)))},
       {in_mm(width_), in_mm(height_)}};
 
-  Group frame{"frame", {}};
-  Path border = rectangle(sheet_.drawing.corner, sheet_.drawing.size);
-  border.stroke_mm = kFrame;
-  frame.items.push_back(std::move(border));
   Group words{"caption", {}};
   double y = add_lines(words.items, title, {top_left.x, strip_top}, kTitle, true);
   y = add_lines(words.items, caption, {top_left.x, y + 0.6}, kText, false);
   add_lines(words.items, credit, {top_left.x, y + 0.8}, kSmall, false);
-  sheet_.groups = {std::move(frame), std::move(legend), std::move(words)};
+  sheet_.groups = {std::move(legend), std::move(words)};
   scale_box_ = {{top_left.x + space.strip_width - kScaleWidth, strip_top},
                 {kScaleWidth, kScaleHeight}};
   if (!block_) return;
   Group sheet_frame{"sheet-frame", {}};
-  Path around = rectangle(glm::dvec2(margin), paper - 2 * margin);
-  around.stroke_mm = kSheetFrame;
-  sheet_frame.items.push_back(std::move(around));
+  sheet_frame.items.push_back(outline_of({glm::dvec2(margin), paper - 2 * margin}, kSheetFrame));
   sheet_.groups.push_back(std::move(sheet_frame));
 }
 
-Sheet SheetLayout::finish(double scale, const std::optional<glm::dvec2>& north,
-                          const std::vector<Label>& labels) const {
+SheetLayout::Arrangement SheetLayout::arrange(const std::vector<ViewSize>& views,
+                                              std::optional<double> scale) const {
+  if (views.size() == 1) {
+    const ViewSize& view = views.front();
+    constexpr double kMargin = 1.02, kSmallest_mm = 1;
+    const glm::dvec2 room = glm::max(drawing_mm() - 2.0 * view.border_mm, kSmallest_mm),
+                     needed = view.life_mm / room;
+    const double chosen = view.scale ? *view.scale
+                          : scale    ? *scale
+                                     : fitting_scale(view.life_mm * (kMargin / 1000), room, 1);
+    return {
+        {{sheet_.drawing, 0, 0, width_, height_, chosen}}, chosen, std::max(needed.x, needed.y)};
+  }
+  const bool has_bars =
+      std::ranges::any_of(views, [](const ViewSize& view) { return view.scale.has_value(); });
+  const ViewGrid grid =
+      arrange_views(views, sheet_.drawing, {kGap, has_bars ? kCaptionWithBar : kCaption}, scale);
+  Arrangement arrangement{{}, grid.scale, grid.tightness};
+  const double pixel_mm = sheet_.drawing.size.x / width_;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const auto pixel = [&](double mm) { return static_cast<int>(std::floor(mm / pixel_mm)); };
+    const glm::dvec2 corner = grid.boxes[i].corner - sheet_.drawing.corner;
+    ViewPlace place;
+    place.x = std::clamp(pixel(corner.x), 0, width_ - 1);
+    place.y = std::clamp(pixel(corner.y), 0, height_ - 1);
+    place.width = std::clamp(pixel(grid.boxes[i].size.x), 1, width_ - place.x);
+    place.height = std::clamp(pixel(grid.boxes[i].size.y), 1, height_ - place.y);
+    place.box = {sheet_.drawing.corner + glm::dvec2(place.x, place.y) * pixel_mm,
+                 glm::dvec2(place.width, place.height) * pixel_mm};
+    place.scale = views[i].scale.value_or(grid.scale);
+    arrangement.places.push_back(place);
+  }
+  return arrangement;
+}
+
+Sheet SheetLayout::finish(const std::vector<PlacedView>& views) const {
   Sheet sheet = sheet_;
-  Group names{"labels", {}};
-  for (const Label& label : labels)
-    names.items.push_back(Words{sheet.drawing.corner + label.at + glm::dvec2(0, kLabel_mm * 0.36),
-                                label.text, kLabel_mm, false, Anchor::middle, true});
-  sheet.groups.insert(sheet.groups.begin(), std::move(names));
+  Group names{"labels", {}}, frame{"frame", {}};
+  for (const PlacedView& view : views) {
+    for (const Label& label : view.labels)
+      names.items.push_back(
+          Words{view.place.box.corner + label.at + glm::dvec2(0, kLabel_mm * 0.36), label.text,
+                kLabel_mm, false, Anchor::middle, true});
+    frame.items.push_back(outline_of(view.place.box, kFrame));
+  }
+  sheet.groups.insert(sheet.groups.begin(), {std::move(names), std::move(frame)});
+  const bool is_common = std::ranges::all_of(
+      views, [&](const PlacedView& view) { return view.place.scale == views.front().place.scale; });
   const glm::dvec2 end = scale_box_.corner + scale_box_.size;
-  constexpr double kArrowRoom = 18, kBarOverhang = 6;  // overhang of the last number
-  const double widest = kScaleWidth - kArrowRoom - 2 * kBarOverhang;
-  sheet.groups.push_back(
-      bar_group(scale_bar(scale, widest), scale, {end.x - kBarOverhang, end.y - 1}));
-  if (north)
+  constexpr double kArrowRoom = 18, kArrow = 11;
+  if (is_common) {
+    const double scale = views.front().place.scale;
+    const ScaleBar bar = scale_bar(scale, kScaleWidth - kArrowRoom - 2 * kBarOverhang_mm);
+    sheet.groups.push_back(
+        bar_group("scale-bar", bar, scale, {end.x - kBarOverhang_mm - bar.length_mm, end.y - 1}));
+  }
+  if (views.size() == 1 && views.front().north)
     sheet.groups.push_back(arrow_group(
-        *north, {scale_box_.corner.x + kArrowRoom / 2, scale_box_.corner.y + kScaleHeight / 2}));
+        "north", *views.front().north,
+        {scale_box_.corner.x + kArrowRoom / 2, scale_box_.corner.y + kScaleHeight / 2}, kArrow));
+  if (views.size() > 1)
+    for (std::size_t i = 0; i < views.size(); ++i)
+      for (Group& group : caption_groups(views[i], i + 1, !is_common))
+        sheet.groups.push_back(std::move(group));
   if (block_) {
     TitleBlock block = *block_;
-    block.scale.text = scale_text(scale);
+    block.scale.text = scales_text(views);
     sheet.groups.push_back(
         title_block_group(block, block_shape_, block_box_.corner, block_box_.size.x));
   }

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "figure/drawing.h"
 #include "figure/legend.h"
 #include "figure/sheet.h"
 #include "figure/title_block.h"
+#include "figure/view_grid.h"
 
 namespace strata::figure {
 
@@ -29,6 +30,23 @@ struct Label {
   std::string text;
 };
 
+// The place of a view on the sheet, which is a box of whole pixels.
+struct ViewPlace {
+  Box box;
+  int x = 0, y = 0;  // in pixels from the top left of the drawing
+  int width = 0, height = 0;
+  double scale = 1;
+};
+
+struct PlacedView {
+  ViewPlace place;
+  std::string title{};  // only shown if there are several views
+  // The direction of north on the paper (y down). It has no value if the angle between north and
+  // the paper is too large.
+  std::optional<glm::dvec2> north{};
+  std::vector<Label> labels{};  // from place_labels
+};
+
 // A sheet without the parts that depend on the scale. It determines the area of the drawing.
 class SheetLayout {
  public:
@@ -43,10 +61,20 @@ class SheetLayout {
   glm::dvec2 drawing_mm() const { return sheet_.drawing.size; }
   const Box& drawing() const { return sheet_.drawing; }  // on the paper
 
-  // `north` is the direction of north on the paper (y down). It has no value if the angle between
-  // north and the paper is too large. `place_labels` makes the labels.
-  Sheet finish(double scale, const std::optional<glm::dvec2>& north,
-               const std::vector<Label>& labels) const;
+  // Places views in the area of the drawing. A single view fills it. `scale` applies to views
+  // without their own scale. Without it, this is the largest round scale at which all views fit.
+  struct Arrangement {
+    std::vector<ViewPlace> places;
+    double scale = 1;
+    // The size of the views relative to their space: of a single view at 1 : 1, of several ones at
+    // `scale`.
+    double tightness = 0;
+  };
+  Arrangement arrange(const std::vector<ViewSize>& views, std::optional<double> scale) const;
+
+  // Views with one common scale have one scale bar. Several views have their titles and scales
+  // below them.
+  Sheet finish(const std::vector<PlacedView>& views) const;
 
  private:
   Sheet sheet_;
@@ -56,18 +84,6 @@ class SheetLayout {
   Box block_box_;
   int width_ = 0, height_ = 0;
 };
-
-// Returns a scale as text, for example "1 : 50" or "2 : 1".
-std::string scale_text(double scale);
-
-// A scale bar with a round length, 20 to 60 mm on paper.
-struct ScaleBar {
-  double length_mm = 0;  // on paper
-  int steps = 1;         // number of equal steps
-  double step = 0;       // length of a step, in `unit`
-  std::string unit;      // "mm", "cm", "m", "km"
-};
-ScaleBar scale_bar(double scale, double widest_mm);
 
 // The label of a record, and the positions at which the record is visible, largest area first.
 struct LabelRequest {

@@ -48,25 +48,31 @@ struct Mark {
 };
 
 using Item = std::variant<Path, Words>;
+struct Box {
+  glm::dvec2 corner{0}, size{0};
+};
+
+// Returns the outline of a box.
+inline Path outline_of(const Box& box, double stroke_mm = 0) {
+  const glm::dvec2 end = box.corner + box.size;
+  return {{box.corner, {end.x, box.corner.y}, end, {box.corner.x, end.y}}, true, {}, stroke_mm};
+}
+
 struct Group {
   std::string id;  // "legend", for users who edit the file
   std::vector<Item> items;
   std::string name{};  // "Damage", for users who edit the file. May be empty.
   double opacity = 1;
-  bool in_drawing = false;  // whether only the part in the box of the drawing is visible
+  std::optional<Box> clip{};  // only the part in this box is visible
   // Drawn after the items, in this order.
   std::vector<Area> areas{};
   std::vector<Mark> marks{};
   std::vector<Group> parts{};
 };
 
-struct Box {
-  glm::dvec2 corner{0}, size{0};
-};
-
 struct Sheet {
   glm::dvec2 size{0};
-  Box drawing;
+  Box drawing;                // of the picture, which contains all views
   std::vector<Group> groups;  // drawn over the drawing, in this order
 };
 

@@ -41,15 +41,8 @@ double height_of(const Row& row) {
   return kRow;
 }
 
-Path rectangle(const glm::dvec2& corner, const glm::dvec2& size, double stroke_mm) {
-  return {{corner, corner + glm::dvec2(size.x, 0), corner + size, corner + glm::dvec2(0, size.y)},
-          true,
-          {},
-          stroke_mm};
-}
-
 void add_cell(std::vector<Item>& items, const Cell& cell, const Box& box) {
-  items.push_back(rectangle(box.corner, box.size, kThin));
+  items.push_back(outline_of(box, kThin));
   const double left = box.corner.x + kPadding, width = box.size.x - 2 * kPadding;
   const auto label = fitted(cell.field->label, kLabel, false, width, 1);
   if (!label.empty())
@@ -86,7 +79,7 @@ Group title_block_group(const TitleBlock& block, BlockShape shape, const glm::dv
     }
     at.y += height_of(row);
   }
-  group.items.push_back(rectangle(corner, {width, at.y - corner.y}, kBorder));
+  group.items.push_back(outline_of({corner, {width, at.y - corner.y}}, kBorder));
   return group;
 }
 

@@ -84,10 +84,11 @@ class GroupWriter {
   void write_group(const Group& group) {
     if (group.items.empty() && group.areas.empty() && group.marks.empty() && group.parts.empty())
       return;
+    const std::size_t clip = group.clip ? clip_of(*group.clip) : 0;
     out_ << "<g id=\"" << escaped(group.id) << '"';
     if (!group.name.empty())
       out_ << " inkscape:groupmode=\"layer\" inkscape:label=\"" << escaped(group.name) << '"';
-    if (group.in_drawing) out_ << " clip-path=\"url(#drawing-clip)\"";
+    if (clip != 0) out_ << " clip-path=\"url(#drawing-clip-" << clip << ")\"";
     if (group.opacity < 1) out_ << " opacity=\"" << short_number(group.opacity) << '"';
     out_ << ">\n";
     if (!group.name.empty()) out_ << "<title>" << escaped(group.name) << "</title>\n";
@@ -100,6 +101,20 @@ class GroupWriter {
   }
 
  private:
+  // Returns the number of the clip path, from 1. Writes it before its first use.
+  std::size_t clip_of(const Box& box) {
+    const auto known = std::ranges::find_if(clips_, [&](const Box& each) {
+      return each.corner == box.corner && each.size == box.size;
+    });
+    if (known != clips_.end()) return static_cast<std::size_t>(known - clips_.begin()) + 1;
+    clips_.push_back(box);
+    out_ << "<clipPath id=\"drawing-clip-" << clips_.size() << "\"><rect x=\""
+         << short_number(box.corner.x) << "\" y=\"" << short_number(box.corner.y) << "\" width=\""
+         << short_number(box.size.x) << "\" height=\"" << short_number(box.size.y)
+         << "\"/></clipPath>\n";
+    return clips_.size();
+  }
+
   void add(const Area& area) {
     if (area.rings.empty()) return;
     const std::string color = rgb_text(area.color), opacity = short_number(area.color[3] / 255.0);
@@ -163,6 +178,7 @@ class GroupWriter {
 
   std::ostream& out_;
   int areas_ = 0;  // ids of clip paths
+  std::vector<Box> clips_;
 };
 
 }  // namespace
@@ -185,11 +201,6 @@ Result<void> write_svg(const Sheet& sheet, const Picture& drawing, const Documen
       << short_number(sheet.drawing.corner.y) << "\" width=\"" << short_number(sheet.drawing.size.x)
       << "\" height=\"" << short_number(sheet.drawing.size.y)
       << "\" preserveAspectRatio=\"none\" href=\"data:image/jpeg;base64," << jpeg << "\"/>\n";
-  if (std::ranges::any_of(sheet.groups, &Group::in_drawing))
-    out << "<clipPath id=\"drawing-clip\"><rect x=\"" << short_number(sheet.drawing.corner.x)
-        << "\" y=\"" << short_number(sheet.drawing.corner.y) << "\" width=\""
-        << short_number(sheet.drawing.size.x) << "\" height=\""
-        << short_number(sheet.drawing.size.y) << "\"/></clipPath>\n";
   GroupWriter writer(out);
   for (const Group& group : sheet.groups) writer.write_group(group);
   out << "</svg>\n";

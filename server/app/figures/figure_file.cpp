@@ -9,13 +9,15 @@
 namespace strata::app {
 namespace {
 
-std::string file_name(const FigureRequest& request, double scale) {
-  const std::string text = scale >= 1 ? "1-" + short_number(scale) : short_number(1 / scale) + "-1";
-  return request.room->model().slug + "-" + request.from + "-" + text +
+std::string file_name(const FigureRequest& request, std::optional<double> scale) {
+  const std::string text = !scale        ? ""
+                           : *scale >= 1 ? "-1-" + short_number(*scale)
+                                         : "-" + short_number(1 / *scale) + "-1";
+  return request.room->model().slug + "-" + request.from + text +
          std::string(figure::extension(request.format));
 }
 
-std::shared_ptr<TemporaryFile> new_file(const FigureRequest& request, double scale,
+std::shared_ptr<TemporaryFile> new_file(const FigureRequest& request, std::optional<double> scale,
                                         const std::filesystem::path& folder) {
   auto file = std::make_shared<TemporaryFile>();
   file->path = folder / (to_string(random_uuid()) + ".figure");
@@ -27,9 +29,7 @@ std::shared_ptr<TemporaryFile> new_file(const FigureRequest& request, double sca
 }  // namespace
 
 ChosenSheet choose_sheet(const FigureRequest& request, const std::vector<figure::Legend>& legends,
-                         const glm::dvec2& size, double metres_per_unit,
-                         const glm::dvec2& border_mm) {
-  constexpr double kMargin = 1.02, kSmallest_mm = 1;
+                         const std::vector<figure::ViewSize>& views) {
   std::optional<ChosenSheet> best;
   for (const bool landscape : {false, true}) {
     if (request.landscape && *request.landscape != landscape) continue;
@@ -37,22 +37,18 @@ ChosenSheet choose_sheet(const FigureRequest& request, const std::vector<figure:
     figure::SheetLayout layout(
         request.sheet_mm.value_or(figure::paper_mm(request.paper, landscape)), request.captions,
         legends, request.dpi, request.sheet_mm ? 0 : figure::SheetLayout::kMargin_mm);
-    const glm::dvec2 room_mm = glm::max(layout.drawing_mm() - 2.0 * border_mm, kSmallest_mm),
-                     needed = size * (metres_per_unit * 1000) / room_mm;
-    const double tightness = std::max(needed.x, needed.y);
-    if (best && tightness >= best->tightness) continue;
-    const double scale =
-        request.scale.value_or(figure::fitting_scale(size * kMargin, room_mm, metres_per_unit));
-    best = ChosenSheet{std::move(layout), scale, tightness};
+    auto arranged = layout.arrange(views, request.scale);
+    if (best && std::pair(arranged.scale, arranged.tightness) >=
+                    std::pair(best->views.scale, best->views.tightness))
+      continue;
+    best = ChosenSheet{std::move(layout), std::move(arranged)};
   }
   return std::move(*best);
 }
 
-Result<std::shared_ptr<const TemporaryFile>> write_figure_file(const FigureRequest& request,
-                                                               const figure::Sheet& sheet,
-                                                               const Picture& picture, double scale,
-                                                               const std::filesystem::path& folder,
-                                                               Progress& progress) {
+Result<std::shared_ptr<const TemporaryFile>> write_figure_file(
+    const FigureRequest& request, const figure::Sheet& sheet, const Picture& picture,
+    std::optional<double> scale, const std::filesystem::path& folder, Progress& progress) {
   auto file = new_file(request, scale, folder);
   const figure::Document document{request.captions.title, request.captions.credit};
   STRATA_TRY(figure::write_figure(sheet, picture, request.dpi, request.format, document, file->path,

@@ -6,26 +6,22 @@
 
 namespace strata::app {
 
-// The parts of a figure that are the same for drawings and rollouts.
+// The sheet and the file of a figure.
 
 struct ChosenSheet {
   figure::SheetLayout layout;
-  double scale;
-  double tightness;  // n of the largest scale 1 : n at which the drawing fits
+  figure::SheetLayout::Arrangement views;
 };
 // Chooses the orientation that allows the larger scale, or portrait if both are equal. Uses the
-// requested scale or the largest scale at which `size` (in model units) fits. `border_mm` of the
-// area of the drawing stays empty on each side.
+// requested scale or the largest scale at which the views fit.
 ChosenSheet choose_sheet(const FigureRequest& request, const std::vector<figure::Legend>& legends,
-                         const glm::dvec2& size, double metres_per_unit,
-                         const glm::dvec2& border_mm = glm::dvec2(0));
+                         const std::vector<figure::ViewSize>& views);
 
-// Writes the sheet to a file with a name such as "pot-front-1-5.pdf".
-Result<std::shared_ptr<const TemporaryFile>> write_figure_file(const FigureRequest& request,
-                                                               const figure::Sheet& sheet,
-                                                               const Picture& picture, double scale,
-                                                               const std::filesystem::path& folder,
-                                                               Progress& progress);
+// Writes the sheet to a file with a name such as "pot-front-1-5.pdf". Without `scale`, the name has
+// no scale.
+Result<std::shared_ptr<const TemporaryFile>> write_figure_file(
+    const FigureRequest& request, const figure::Sheet& sheet, const Picture& picture,
+    std::optional<double> scale, const std::filesystem::path& folder, Progress& progress);
 
 // Writes a drawing for CAD programs to such a file.
 Result<std::shared_ptr<const TemporaryFile>> write_dxf_file(const FigureRequest& request,

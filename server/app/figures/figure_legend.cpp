@@ -63,6 +63,54 @@ Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& r
   return keys;
 }
 
+// A layer with its palette, in all views that show it like this.
+struct ListedLayer {
+  const FigureRequest* request;  // of the first view
+  const Layer* layer;
+  const Palette* palette;
+  std::set<double> values;  // visible in any of the views
+  bool waits = false;       // whether it has unreviewed edits
+};
+
+void list_layers(const SeenView& view, std::vector<ListedLayer>& listed) {
+  const FigureRequest& request = *view.request;
+  for (std::size_t i = request.layers.size(); i-- > 0;) {  // the topmost layer first
+    const Layer& layer = request.layers[i];
+    // Also true if unreviewed edits only erased texels.
+    const bool waits = request.shown.provisional.contains(layer.id);
+    if (!view.seen[i].is_seen && !waits) continue;
+    const Palette& palette = palette_of(request, layer);
+    const auto known = std::ranges::find_if(listed, [&](const ListedLayer& each) {
+      return each.layer->id == layer.id && to_json(*each.palette) == to_json(palette);
+    });
+    ListedLayer& entry = known != listed.end()
+                             ? *known
+                             : listed.emplace_back(ListedLayer{&request, &layer, &palette, {}});
+    entry.values.insert(view.seen[i].values.begin(), view.seen[i].values.end());
+    entry.waits |= waits;
+  }
+}
+
+figure::Legend legend_of(store::Store& store, const ListedLayer& listed) {
+  const FigureRequest& request = *listed.request;
+  const Layer& layer = *listed.layer;
+  const Palette& palette = *listed.palette;
+  figure::Legend legend = figure::legend_of(layer, palette, &listed.values, request.language);
+  if (listed.waits) {
+    const Palette::Point& waiting = room::provisional_palette()->points.front();
+    legend.entries.push_back(
+        {request.waiting_label, waiting.color, waiting.pattern, waiting.angle, true});
+  }
+  if (palette.column.empty() || !layer.table) return legend;
+  const auto table = store.tables().find(to_string(*layer.table), request.role);
+  const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
+  if (column)
+    legend.title = label_or(layer.labels, request.language, layer.name) + ": " +
+                   label_or(column->labels, request.language, column->name) +
+                   (column->unit.empty() ? "" : " [" + column->unit + "]");
+  return legend;
+}
+
 }  // namespace
 
 const Palette& palette_of(const FigureRequest& request, const Layer& layer) {
@@ -80,9 +128,9 @@ std::vector<query::LayerCover> covers_of(const FigureRequest& request) {
   return covers;
 }
 
-Result<std::vector<figure::Legend>> legends_of(store::Store& store, const FigureRequest& request,
-                                               const figure::Drawing& drawing) {
-  if (request.layers.empty()) return std::vector<figure::Legend>{};
+Result<std::vector<query::SeenLayer>> layers_in(store::Store& store, const FigureRequest& request,
+                                                const figure::Drawing& drawing) {
+  if (request.layers.empty()) return std::vector<query::SeenLayer>{};
   const Camera camera = figure::camera_of(drawing);
   const double cells = static_cast<double>(camera.width) * camera.height;
   const double coarser = std::max(1.0, std::sqrt(cells / kMaxCells));
@@ -97,32 +145,14 @@ Result<std::vector<figure::Legend>> legends_of(store::Store& store, const Figure
     seen[i].is_seen |= !marked.empty();
     seen[i].values.insert(marked.begin(), marked.end());
   }
-  return legends_of(store, request, seen);
+  return seen;
 }
 
-Result<std::vector<figure::Legend>> legends_of(store::Store& store, const FigureRequest& request,
-                                               const std::vector<query::SeenLayer>& seen) {
+std::vector<figure::Legend> legends_of(store::Store& store, const std::vector<SeenView>& views) {
+  std::vector<ListedLayer> listed;
+  for (const SeenView& view : views) list_layers(view, listed);
   std::vector<figure::Legend> legends;
-  for (std::size_t i = request.layers.size(); i-- > 0;) {  // the topmost layer first
-    const Layer& layer = request.layers[i];
-    const Palette& palette = palette_of(request, layer);
-    // Also true if unreviewed edits only erased texels.
-    const bool waits = request.shown.provisional.contains(layer.id);
-    if (!seen[i].is_seen && !waits) continue;
-    legends.push_back(figure::legend_of(layer, palette, &seen[i].values, request.language));
-    if (waits) {
-      const Palette::Point& waiting = room::provisional_palette()->points.front();
-      legends.back().entries.push_back(
-          {request.waiting_label, waiting.color, waiting.pattern, waiting.angle, true});
-    }
-    if (palette.column.empty() || !layer.table) continue;
-    const auto table = store.tables().find(to_string(*layer.table), request.role);
-    const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
-    if (column)
-      legends.back().title = label_or(layer.labels, request.language, layer.name) + ": " +
-                             label_or(column->labels, request.language, column->name) +
-                             (column->unit.empty() ? "" : " [" + column->unit + "]");
-  }
+  for (const ListedLayer& each : listed) legends.push_back(legend_of(store, each));
   return legends;
 }
 

@@ -328,7 +328,8 @@ std::vector<std::size_t> outlined_layers(const FigureRequest& request) {
 
 Result<FigureVectors> figure_vectors(store::Store& store, ByteBudget& budget,
                                      const FigureRequest& request, const figure::Drawing& drawing,
-                                     const figure::Box& area, Progress& progress) {
+                                     const figure::Box& area, const Stage& stage,
+                                     Progress& progress) {
   FigureVectors vectors;
   // From the drawing's top left.
   const glm::dvec2 overlap(request.format == figure::Format::dxf ? 0 : kOverlap_mm);
@@ -338,9 +339,8 @@ Result<FigureVectors> figure_vectors(store::Store& store, ByteBudget& budget,
                                            static_cast<std::uint64_t>(grid.rows)));
   const auto outlined = outlined_layers(request);
   for (std::size_t i = 0; i < outlined.size(); ++i) {
-    progress.begin_stage(
-        0.05 + 0.4 * static_cast<double>(i) / static_cast<double>(outlined.size()),
-        0.05 + 0.4 * static_cast<double>(i + 1) / static_cast<double>(outlined.size()));
+    const Stage of_layer = stage.part(i, outlined.size());
+    progress.begin_stage(of_layer.from, of_layer.to);
     auto found = STRATA_TRY(areas_of(store, request, drawing, area.corner, outlined_area, grid,
                                      request.layers[outlined[i]], progress));
     vectors.areas.push_back(std::move(found));

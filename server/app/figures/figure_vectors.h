@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/figures/figures.h"
+#include "app/figures/sheet_view.h"
 #include "figure/layer_areas.h"
 
 namespace strata::app {
@@ -32,6 +32,7 @@ struct FigureVectors {
 };
 Result<FigureVectors> figure_vectors(store::Store& store, ByteBudget& budget,
                                      const FigureRequest& request, const figure::Drawing& drawing,
-                                     const figure::Box& area, Progress& progress);
+                                     const figure::Box& area, const Stage& stage,
+                                     Progress& progress);
 
 }  // namespace strata::app

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "app/services.h"
 #include "core/byte_budget.h"
 #include "core/progress.h"
 #include "core/temporary_file.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/tables/table.h"
+#include "figure/drawing.h"
 #include "figure/files.h"
 #include "figure/layout.h"
 #include "mesh/rollout/fit_developed_surface.h"
@@ -60,12 +62,17 @@ struct FigureRequest {
     Column column;
   };
   std::optional<Labels> labels;
+  // Several views on one sheet instead of one. Of a view, the members above that describe the sheet
+  // have no effect. `scale` is that of the view only, and `view_title` the text below it.
+  std::vector<FigureRequest> views{};
+  std::string view_title{};
 };
 
-// Draws a figure on a plane and writes it to a file in `folder`. Returns 422 for a section that
-// removes the whole model and for a DXF file without content, and 503 if too many figures are being
-// created. Blocks.
-Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, ByteBudget& budget,
+// Draws a figure and writes it to a file in `folder`. Returns 422 for a section that removes the
+// whole model, for a DXF file without content, and for a rollout that nothing fits, and 503 if too
+// many figures are being created. Blocks.
+Result<std::shared_ptr<const TemporaryFile>> make_figure(const Services& services,
+                                                         ByteBudget& budget,
                                                          const FigureRequest& request,
                                                          const std::filesystem::path& folder,
                                                          Progress& progress);

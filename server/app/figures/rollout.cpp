@@ -31,21 +31,18 @@ Result<mesh::FittedSheet> plan_rollout(const RolloutRequest& request) {
   return *sheet;
 }
 
-Result<Picture> draw_rollout(const Services& services, const RolloutRequest& request,
-                             const mesh::FittedSheet& plan, const mesh::RolloutWindow& window,
-                             Progress& progress) {
+Result<void> draw_rollout(const Services& services, const RolloutRequest& request,
+                          const mesh::FittedSheet& plan, const mesh::RolloutWindow& window,
+                          const TakeRolloutRow& take, Progress& progress) {
   const auto geometry = request.room->surface().geometry();
   const auto tree = request.room->surface().search_tree();
   const ComposedSurface surface = STRATA_TRY(compose_surface(
       services, *request.room, request.role, request.layers, request.shown, request.at));
   std::optional<mesh::SurfaceNormals> normals;
   if (request.relief) normals.emplace(geometry);
-  Picture picture{window.width, window.height, {}};
-  picture.rgba.resize(std::size_t{4} * static_cast<std::size_t>(window.width) *
-                      static_cast<std::size_t>(window.height));
   const auto draw_row = [&](int row, std::span<const std::optional<mesh::RolloutHit>> pixels) {
-    std::uint8_t* rgba =
-        &picture.rgba[std::size_t{4} * static_cast<std::size_t>(row) * pixels.size()];
+    std::vector<std::uint8_t> line(4 * pixels.size(), 0);
+    std::uint8_t* rgba = line.data();
     for (const auto& pixel : pixels) {
       if (pixel) {
         const double brightness = normals ? relief_at(plan.sheet, *pixel, *normals) : 1;
@@ -56,8 +53,21 @@ Result<Picture> draw_rollout(const Services& services, const RolloutRequest& req
       }
       rgba += 4;
     }
+    take(row, line);
   };
-  STRATA_TRY(mesh::trace_rollout(*tree, *geometry, plan.sheet, window, draw_row, progress));
+  return mesh::trace_rollout(*tree, *geometry, plan.sheet, window, draw_row, progress);
+}
+
+Result<Picture> draw_rollout(const Services& services, const RolloutRequest& request,
+                             const mesh::FittedSheet& plan, const mesh::RolloutWindow& window,
+                             Progress& progress) {
+  Picture picture{window.width, window.height, {}};
+  picture.rgba.resize(std::size_t{4} * static_cast<std::size_t>(window.width) *
+                      static_cast<std::size_t>(window.height));
+  const auto take = [&](int row, std::span<const std::uint8_t> rgba) {
+    std::ranges::copy(rgba, picture.rgba.begin() + static_cast<std::ptrdiff_t>(rgba.size()) * row);
+  };
+  STRATA_TRY(draw_rollout(services, request, plan, window, take, progress));
   return picture;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "app/services.h"
@@ -37,5 +39,10 @@ Result<mesh::FittedSheet> plan_rollout(const RolloutRequest& request);
 Result<Picture> draw_rollout(const Services& services, const RolloutRequest& request,
                              const mesh::FittedSheet& plan, const mesh::RolloutWindow& window,
                              Progress& progress);
+// As above, but passes each row to `take` as RGBA8. Calls it on several threads.
+using TakeRolloutRow = std::function<void(int row, std::span<const std::uint8_t> rgba)>;
+Result<void> draw_rollout(const Services& services, const RolloutRequest& request,
+                          const mesh::FittedSheet& plan, const mesh::RolloutWindow& window,
+                          const TakeRolloutRow& take, Progress& progress);
 
 }  // namespace strata::app

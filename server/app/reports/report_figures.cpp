@@ -97,7 +97,7 @@ Result<std::shared_ptr<const TemporaryFile>> draw_figure(const ReportContext& co
   check_question();
   Progress drawing;  // its messages and fractions are not those of the report
   const Progress::WhenCancelled stop(progress, [&drawing] { drawing.cancel(); });
-  return make_figure(context.services.store, context.budget, figure, context.folder, drawing);
+  return make_figure(context.services, context.budget, figure, context.folder, drawing);
 }
 
 }  // namespace

@@ -279,7 +279,7 @@ TEST_F(UseCases, a_figure_is_drawn_to_a_file_that_goes_with_its_last_owner) {
   Progress progress;
   const auto folder = fs::temp_directory_path() / to_string(random_uuid());
   fs::create_directory(folder);
-  auto file = make_figure(*store_, budget, request, folder, progress);
+  auto file = make_figure(services(), budget, request, folder, progress);
   ASSERT_TRUE(file) << file.error().detail;
   EXPECT_EQ((*file)->media_type, "application/pdf");
   EXPECT_EQ((*file)->bytes, fs::file_size((*file)->path));
@@ -290,7 +290,7 @@ TEST_F(UseCases, a_figure_is_drawn_to_a_file_that_goes_with_its_last_owner) {
   file = fail(ErrorCode::gone, {}, {});
   EXPECT_TRUE(fs::is_empty(folder));
   request.section = {{0, 0, 1, -1e9}};  // cuts off the whole model
-  const auto refused = make_figure(*store_, budget, request, folder, progress);
+  const auto refused = make_figure(services(), budget, request, folder, progress);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().field, "camera.section");
   fs::remove_all(folder);

@@ -1,5 +1,5 @@
-"""What a sheet of figures has besides the drawing: a title block with texts of the model, the
-project and the request. In all file formats it is in the same place."""
+"""Sheets of figures: a title block with texts of the model, the project and the request, in the same
+place in all file formats, and several views with one scale and one legend."""
 import datetime
 import os
 import re
@@ -10,7 +10,7 @@ import xml.etree.ElementTree as xml
 import numpy
 import pytest
 from support import tiff
-from support.meshes import folded_grid
+from support.meshes import bumpy_ball, folded_grid
 from support.pictures import pixels
 
 M = "/models/sheet"  # a flat sheet with x and y from 0 to 100 mm
@@ -192,6 +192,212 @@ def test_formats(server):
         "POST", M + "/figures", {**rollout, "format": "svg", "title_block": {}, "dpi": 60}
     )
     assert answer.status == 200 and group_of(answer.body, "title-block"), answer
+
+
+def boxes_of(svg):
+    """Returns the boxes of the views: left, top, right and bottom in millimeters on paper."""
+    return [(*each.min(axis=0), *each.max(axis=0)) for each in group_of(svg, "frame")[0]]
+
+
+def pixels_in(rows, box, dpi):
+    left, top, right, bottom = (round(each / 25.4 * dpi) for each in box)
+    return rows[top + 1 : bottom - 1, left + 1 : right - 1]
+
+
+def middles(rows, color):
+    """Returns the middle of the pixels of a color on the left and on the right half, in pixels."""
+    y, x = numpy.nonzero((abs(rows.astype(int) - color) < 60).all(axis=2))
+    left = x < (x.min() + x.max()) / 2
+    return numpy.array([[x[half].mean(), y[half].mean()] for half in (left, ~left)])
+
+
+@pytest.fixture(scope="module")
+def ball(server):
+    """A ball with two discs at y = −15 mm and y = 15 mm, on its right and on its left side. The disc
+    at 15 mm is larger. Class 2 is only on its back."""
+    server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
+    points = [
+        {"at": at, "color": color, "label": label}
+        for at, color, label in ((1, "#ff0000", "Disc"), (2, "#0000ff", "Back"))
+    ]
+    server.ok(
+        "POST",
+        "/models/ball/layers",
+        {
+            "name": "Marks",
+            "type": "u8",
+            "resolution": 2048,
+            "palette": {"mode": "categorical", "points": points},
+        },
+    )
+    for where, value in (
+        ("abs(x) > 1 and (y + 15) * (y + 15) + z * z < 4", 1),
+        ("abs(x) > 1 and (y - 15) * (y - 15) + z * z < 16", 1),
+        ("y > 0 and x * x + z * z < 16", 2),
+    ):
+        server.ok(
+            "POST",
+            "/models/ball/layers/marks/edits",
+            {"op": "fill", "mode": "where", "where": where, "value": value},
+        )
+
+
+def of_ball(server, expect=200, **wish):
+    wish = {"dpi": 100, "light": {"mode": "unlit"}, "looks": [], **wish}
+    answer = server.request("POST", "/models/ball/figures", wish)
+    assert answer.status == expect, (wish, answer)
+    return answer
+
+
+def test_views_are_to_scale(server, ball):
+    """Each view has the common scale or its own scale, in pixels and in the text below it."""
+    views = [{"direction": "right", "title": "Right"}, {"direction": "left", "title": "Left"}]
+    views += [{"direction": "front", "title": "Front"}, {"direction": "back", "title": "Back"}]
+    for paper, orientation, own in (
+        ("a4", "portrait", None),
+        ("a4", "landscape", None),
+        ("a3", "landscape", 4),
+        ("a5", "portrait", 0.8),
+    ):
+        wish = {"paper": paper, "orientation": orientation, "views": [dict(each) for each in views]}
+        if own:
+            wish["views"][1]["scale"] = own
+        svg = of_ball(server, format="svg", **wish)
+        boxes = boxes_of(svg.body)
+        assert len(boxes) == 4
+        texts = [group_of(svg.body, f"view-{i}")[1] for i in range(1, 5)]
+        assert [each[0] for each in texts] == ["Right", "Left", "Front", "Back"]
+        if own:
+            bars = [group_of(svg.body, f"scale-bar-{i}") for i in range(1, 5)]
+            assert all(bars) and group_of(svg.body, "scale-bar") is None
+            scales = [bar[1][-1] for bar in bars]
+            assert scales[1] == (f"1 : {own}" if own > 1 else "1.25 : 1")
+            assert "ball-views.svg" in svg.headers["Content-Disposition"]
+        else:
+            assert group_of(svg.body, "scale-bar-1") is None
+            scales = [each[1] for each in texts]
+            assert group_of(svg.body, "scale-bar")[1][-1] == scales[0]
+            assert re.search(r"ball-views-1-[\d.]+\.svg", svg.headers["Content-Disposition"])
+        assert len({each for i, each in enumerate(scales) if i != 1 or not own}) == 1
+        rows = tiff.read(of_ball(server, format="tiff", **wish).body)[0]
+        for i, to_right in ((0, 1), (1, -1)):
+            part = pixels_in(rows, boxes[i], 100)
+            n, m = (float(each) for each in scales[i].split(" : "))
+            found = middles(part, (255, 0, 0))
+            apart = (found[1] - found[0])[0] / 100 * 25.4 * m / n
+            assert abs(apart - 30) < 0.3 * m / n + 0.2, (wish, i, apart)
+            y, x = numpy.nonzero((abs(part.astype(int) - (255, 0, 0)) < 60).all(axis=2))
+            larger = (x > part.shape[1] / 2).mean() > 0.5
+            assert larger == (to_right > 0), (i, larger)
+        # the back has the only blue disc
+        blue = [
+            (abs(pixels_in(rows, box, 100).astype(int) - (0, 0, 255)) < 60).all(axis=2).sum()
+            for box in boxes
+        ]
+        assert blue[3] > 20 and blue[2] == 0, blue
+        # one legend for all views
+        assert group_of(svg.body, "legend")[1] == ["Marks", "Disc", "Back"]
+        # the space between the views is white
+        inside = numpy.zeros(rows.shape[:2], bool)
+        for left, top, right, bottom in (numpy.array(box) / 25.4 * 100 for box in boxes):
+            inside[int(top) : int(bottom) + 2, int(left) : int(right) + 2] = True
+        low = int(boxes[0][0] / 25.4 * 100)
+        between = (slice(0, int(boxes[0][3] / 25.4 * 100)), slice(low, None))
+        colored = numpy.ptp(rows[between].astype(int), axis=2) > 40
+        legend = int(max(box[2] for box in boxes) / 25.4 * 100) + 2
+        assert not (colored & ~inside[between])[:, : legend - low].any()
+
+
+def test_views_of_a_sheet(server, ball):
+    """Views can be saved views with their own layers, rollouts and outlines, with a title block."""
+    for name, visible in (("With marks", True), ("Without", False)):
+        server.ok(
+            "POST",
+            "/models/ball/views",
+            {
+                "name": name,
+                "camera": {
+                    "view": [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, -500, 1],
+                    "projection": [0.02, 0, 0, 0, 0, 0.02, 0, 0, 0, 0, -0.001, 0, 0, 0, -1, 1],
+                    "width": 100,
+                    "height": 100,
+                },
+                "layers": [{"layer": "marks", "visible": visible}],
+                "looks": [],
+                "light": {"mode": "unlit"},
+            },
+        )
+    axis = {"axis": {"point": [0, 0, 0], "direction": [0, 0, 1]}}
+    wish = {
+        "format": "svg",
+        "areas": "outlines",
+        "title_block": {},
+        "views": [
+            {"view": "with-marks"},
+            {"view": "without", "title": "Bare"},
+            {"direction": "right"},
+            {"rollout": axis, "scale": 2},
+            {"normal": [1, 1, 0], "center": [0, 0, 0]},
+        ],
+    }
+    answer = server.request("POST", "/models/ball/figures", {**wish, "dpi": 60})
+    assert answer.status == 200, answer
+    svg = answer.body
+    ids = [each.get("id") for each in xml.fromstring(svg).iter() if each.get("id")]
+    assert len(ids) == len(set(ids)), "ids of views differ"
+    assert {"areas-marks-view-3", "areas-marks-view-5"} <= set(ids), ids
+    assert not {"areas-marks-view-2", "areas-marks-view-4"} & set(ids), ids
+    texts = [group_of(svg, f"view-{i}")[1] for i in range(1, 6)]
+    assert [each[:1] for each in texts] == [["With marks"], ["Bare"], [], [], []], texts
+    assert any("angles" in each or "degrees" in each or "ruler" in each for each in ids), ids
+    scale = group_of(svg, "title-block")[1]
+    assert any(re.fullmatch(r"1 : [\d.]+, 1 : 2|1 : 2", each) for each in scale), scale
+    # outlines are clipped at the boxes of their views
+    boxes = boxes_of(svg)
+    rects = [
+        each
+        for clip in xml.fromstring(svg).iter(SVG + "clipPath")
+        if clip.get("id").startswith("drawing-clip")
+        for each in clip
+    ]
+    clips = [[float(each.get(name)) for name in ("x", "y")] for each in rects]
+    assert len(clips) >= 2
+    for corner in clips:
+        assert min(numpy.abs(numpy.subtract(box[:2], corner)).max() for box in boxes) < 0.01
+    # all formats have the same size
+    for kind in ("pdf", "png", "tiff"):
+        more = {**wish, "format": kind, "dpi": 60}
+        if kind != "pdf":
+            del more["areas"]
+        answer = server.request("POST", "/models/ball/figures", more)
+        assert answer.status == 200 and len(answer.body) > 1000, answer
+
+
+def test_refusals_of_views(server, ball):
+    two = [{"direction": "top"}, {"direction": "front"}]
+    for wish, field in (
+        ({"views": two[:1]}, "views"),
+        ({"views": two * 4}, "views"),
+        ({"views": [{"direction": "north"}, {}]}, "views[0].direction"),
+        ({"views": [{}, {"view": "nothing"}]}, "views[1].view"),
+        ({"views": [{}, {"normal": [0, 0, 0]}]}, "views[1].normal"),
+        ({"views": [{}, {"direction": "top", "normal": [0, 0, 1]}]}, "views[1].normal"),
+        ({"views": [{}, {"direction": "top", "rollout": {}}]}, "views[1].direction"),
+        ({"views": [{}, {"rollout": {}}]}, "views[1].rollout.axis"),
+        ({"views": [{}, {"title": "x" * 201}]}, "views[1].title"),
+        ({"views": [{}, {"scale": 0}]}, "views[1].scale"),
+        ({"views": [{}, {"nothing": 1}]}, None),
+        ({"views": two, "direction": "top"}, "direction"),
+        ({"views": two, "normal": [0, 0, 1]}, "normal"),
+        ({"views": two, "center": [0, 0, 1]}, "center"),
+        ({"views": two, "rollout": {}}, "rollout"),
+        ({"views": two, "format": "dxf"}, "format"),
+    ):
+        problem = of_ball(server, 422, **wish).json()
+        assert problem["detail"] and (field is None or problem.get("field") == field), (
+            wish,
+            problem,
+        )
 
 
 def test_refusals(server):

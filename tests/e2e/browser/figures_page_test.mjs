@@ -324,6 +324,65 @@ test("a PDF is made, saved under its name, and listed no more", async () => {
   await shot(ada, "saved");
 });
 
+test("a title block has the written texts, and the author stays on this computer", async () => {
+  const before = await sheet(ada);
+  const { title, fields } = words.figures.block;
+  await dialog(ada).locator("summary", { hasText: title }).click();
+  const framed = await sheet_after(ada, before, () => field(ada, "title_block").check());
+  await sheet_after(ada, framed, async () => {
+    await field(ada, "block_author").fill("Ada Lovelace");
+    await field(ada, "block_sheet").fill("2/5");
+  });
+  const { labels, ...block } = asked.get(ada).preview.title_block;
+  assert.deepEqual(block, { author: "Ada Lovelace", sheet: "2/5" });
+  assert.deepEqual(labels, fields);
+  await shot(ada, "title_block");
+  const { title_block: is_on, block_texts } = await ada.page.evaluate(() =>
+    JSON.parse(localStorage.getItem("strata.figure")),
+  );
+  assert.deepEqual([is_on, block_texts], [true, { organization: "", author: "Ada Lovelace" }]);
+  await radio(ada, "SVG").click();
+  const svg = (await make(ada)).bytes.toString("utf8");
+  for (const word of ["Ada Lovelace", "2/5", fields.checked_by, "Pot of Agathe"])
+    assert.ok(svg.includes(`>${word}</text>`), `${word} is not in the title block`);
+  await field(ada, "title_block").uncheck();
+});
+
+test("several views are on one sheet: directions or saved views", async () => {
+  const { camera } = asked.get(ada).preview;
+  for (const name of ["Handle", "Rim"])
+    await server.json("POST", `${kBase}/views`, { name, camera });
+  const before = await sheet(ada);
+  const four = await sheet_after(ada, before, () => field(ada, "views").selectOption("sides"));
+  const { directions } = words.figures.views;
+  assert.deepEqual(
+    asked.get(ada).preview.views.map(({ direction, title }) => [direction, title]),
+    ["front", "back", "left", "right"].map((each) => [each, directions[each]]),
+  );
+  assert.equal(await field(ada, "from").count(), 0);
+  await shot(ada, "views");
+  const svg = await make(ada);
+  assert.match(svg.name, /-views-1-[\d.]+\.svg$/);
+  for (const each of ["front", "back", "left", "right"])
+    assert.ok(svg.bytes.toString("utf8").includes(`>${directions[each]}</text>`), each);
+  // a drawing for CAD programs is a single one
+  await radio(ada, "DXF").click();
+  assert.deepEqual([await field(ada, "views").count(), await field(ada, "from").count()], [0, 1]);
+  await radio(ada, "PDF").click();
+  await field(ada, "views").selectOption("saved");
+  await dialog(ada).getByText(words.figures.views.few(2)).waitFor();
+  await button(ada, words.figures.make).click(); // refused on the page
+  await dialog(ada).getByRole("alert").getByText(words.figures.views.few(2)).waitFor();
+  await sheet_after(ada, four, async () => {
+    for (const name of ["Rim", "Handle"])
+      await dialog(ada).getByRole("checkbox", { name, exact: true }).check();
+  });
+  assert.equal(asked.get(ada).preview.views.length, 2);
+  await shot(ada, "saved_views");
+  await field(ada, "views").selectOption("one");
+  assert.equal((await sheet(ada)).text, before.text);
+});
+
 test("one that takes long is given up", async () => {
   downloads = [];
   ada.page.on("download", (file) => downloads.push(file.suggestedFilename()));

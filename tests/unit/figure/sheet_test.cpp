@@ -3,8 +3,10 @@
 #include <png.h>
 #include <tiffio.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <numeric>
 #include <sstream>
@@ -13,6 +15,7 @@
 #include "figure/files.h"
 #include "figure/layer_areas.h"
 #include "figure/layout.h"
+#include "figure/scale_bar.h"
 #include "figure/sheet_rows.h"
 #include "figure/text.h"
 
@@ -44,6 +47,13 @@ Picture drawing_of(const SheetLayout& layout) {
     picture.rgba[i + 2] = left ? 20 : 220;
   }
   return picture;
+}
+
+// Returns the sheet with one view that fills the area of the drawing.
+Sheet finish(const SheetLayout& layout, double scale, const std::optional<glm::dvec2>& north,
+             const std::vector<Label>& labels) {
+  const auto arranged = layout.arrange({{{1, 1}}}, scale);
+  return layout.finish({{arranged.places.front(), "", north, labels}});
 }
 
 TitleBlock title_block(const std::string& text) {
@@ -91,7 +101,7 @@ TEST(SheetLayout, EverythingIsOnThePaperAndBesideTheDrawing) {
         const glm::dvec2 size = paper_mm(paper, landscape);
         const SheetLayout layout(size, kCaptions,
                                  entries == 0 ? std::vector<Legend>{} : legends(entries), 300);
-        const Sheet sheet = layout.finish(20, glm::dvec2(0, -1), {});
+        const Sheet sheet = finish(layout, 20, glm::dvec2(0, -1), {});
         const glm::dvec2 end = sheet.drawing.corner + sheet.drawing.size;
         EXPECT_GT(sheet.drawing.size.x, size.x / 3);
         EXPECT_GT(sheet.drawing.size.y, size.y / 3);
@@ -133,7 +143,7 @@ TEST(SheetLayout, NothingOverlapsTheTitleBlock) {
           captions.block = title_block(text);
           const SheetLayout layout(size, captions,
                                    entries == 0 ? std::vector<Legend>{} : legends(entries), 300);
-          const Sheet sheet = layout.finish(20, glm::dvec2(0, -1), {});
+          const Sheet sheet = finish(layout, 20, glm::dvec2(0, -1), {});
           EXPECT_GT(sheet.drawing.size.x, size.x / 3);
           EXPECT_GT(sheet.drawing.size.y, size.y / 5);
           std::vector<std::pair<std::string, Box>> boxes{{"drawing", sheet.drawing}};
@@ -218,8 +228,8 @@ TEST(SheetLayout, AListOfTheLegendStaysTogetherOrHasItsTitleInEachColumn) {
         }
         Captions captions = kCaptions;
         captions.continued = "(goes on)";
-        const Sheet sheet = SheetLayout(paper_mm(paper, landscape), captions, lists, 300)
-                                .finish(20, std::nullopt, {});
+        const Sheet sheet = finish(SheetLayout(paper_mm(paper, landscape), captions, lists, 300),
+                                   20, std::nullopt, {});
         const auto group = std::ranges::find(sheet.groups, "legend", &Group::id);
         ASSERT_NE(group, sheet.groups.end());
         std::string title;  // title above the next entry
@@ -260,8 +270,8 @@ TEST(SheetLayout, ASwatchIsTintedAndHasABorderAsTheDrawing) {
   for (const Pattern pattern : {Pattern::hatch, Pattern::dots})
     for (const bool bare : {false, true}) {
       legend.entries = {{"Loss", Rgba{200, 0, 100, 255}, pattern, 45, bare}};
-      const Sheet sheet = SheetLayout(paper_mm(Paper::a4, false), kCaptions, {legend}, 300)
-                              .finish(20, std::nullopt, {});
+      const Sheet sheet = finish(SheetLayout(paper_mm(Paper::a4, false), kCaptions, {legend}, 300),
+                                 20, std::nullopt, {});
       const auto group = std::ranges::find(sheet.groups, "legend", &Group::id);
       int tints = 0, inks = 0;
       glm::dvec2 low(1e9), high(-1e9);
@@ -282,7 +292,7 @@ TEST(SheetLayout, ASwatchIsTintedAndHasABorderAsTheDrawing) {
 TEST(SheetLayout, LongWordsAreBrokenAndEnd) {
   const std::string endless(5000, 'x');
   const SheetLayout layout(paper_mm(Paper::a4, false), {endless, endless, endless}, {}, 150);
-  for (const Words& words : all<Words>(layout.finish(1, std::nullopt, {})))
+  for (const Words& words : all<Words>(finish(layout, 1, std::nullopt, {})))
     EXPECT_LE(width_mm(words.text, words.size_mm, words.bold), 190);
   EXPECT_EQ(wrapped("one two", 3, false, 1000, 1), std::vector<std::string>{"one two"});
   EXPECT_EQ(wrapped("one\ntwo", 3, false, 1000, 5), (std::vector<std::string>{"one", "two"}));
@@ -376,7 +386,7 @@ class Files : public ::testing::Test {
     const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, legends(3), dpi);
     const fs::path file = folder_ / ("sheet" + std::string(extension(format)));
     const auto written = write_figure(
-        layout.finish(2, glm::dvec2(0.6, -0.8), {{{50, 40}, "Ünit 7 — Ψ"}}), drawing_of(layout),
+        finish(layout, 2, glm::dvec2(0.6, -0.8), {{{50, 40}, "Ünit 7 — Ψ"}}), drawing_of(layout),
         dpi, format, {kCaptions.title, kCaptions.credit}, file, progress_);
     EXPECT_TRUE(written) << (written ? "" : written.error().detail);
     return file;
@@ -447,7 +457,7 @@ TEST_F(Files, CharactersThatFilesDoNotHaveAreLeftOut) {
   const std::string odd = "W\x01st \uFFFEwall\uFFFF";
   const SheetLayout layout(paper_mm(Paper::a5, true), {odd, odd, odd}, {}, 100);
   for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf}) {
-    const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format,
+    const auto written = write_figure(finish(layout, 2, {}, {}), drawing_of(layout), 100, format,
                                       {odd, odd}, folder_ / extension(format), progress_);
     EXPECT_TRUE(written) << extension(format) << ": " << written.error().detail;
   }
@@ -468,8 +478,8 @@ TEST_F(Files, CancelledWritesEnd) {
   progress_.cancel();
   const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, {}, 100);
   for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf}) {
-    const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format, {},
-                                      folder_ / "none", progress_);
+    const auto written = write_figure(finish(layout, 2, {}, {}), drawing_of(layout), 100, format,
+                                      {}, folder_ / "none", progress_);
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::cancelled);
   }
@@ -480,7 +490,7 @@ TEST_F(Files, ADiskThatTakesNothingIsSaid) {
   for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf})
     for (const fs::path& file : {fs::path("/dev/full"), folder_ / "no" / "folder"}) {
       if (format == Format::tiff && file == "/dev/full") continue;  // libtiff needs to seek
-      const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format,
+      const auto written = write_figure(finish(layout, 2, {}, {}), drawing_of(layout), 100, format,
                                         {}, file, progress_);
       ASSERT_FALSE(written) << file << " " << static_cast<int>(format);
       EXPECT_EQ(written.error().code, ErrorCode::storage_full);
@@ -491,7 +501,7 @@ TEST_F(Files, AFullDiskIsAnError) {
   const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, {}, 100);
   const fs::path file = folder_ / "full.pdf";
   fs::create_symlink("/dev/full", file);  // accepts no bytes
-  const auto written = write_figure(layout.finish(2, std::nullopt, {}), drawing_of(layout), 100,
+  const auto written = write_figure(finish(layout, 2, std::nullopt, {}), drawing_of(layout), 100,
                                     Format::pdf, {}, file, progress_);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, ErrorCode::storage_full) << written.error().detail;
@@ -588,7 +598,7 @@ TEST(Areas, EndAtTheEdgeOfTheDrawing) {
   sheet.drawing = {{10, 10}, {20, 20}};
   Group group;
   group.id = "areas-damage";
-  group.in_drawing = true;
+  group.clip = sheet.drawing;
   group.areas.push_back(
       {{{{5, 5}, {35, 5}, {35, 35}, {5, 35}}}, {200, 0, 0, 255}, Pattern::outline, 45, 2});
   sheet.groups.push_back(std::move(group));
@@ -605,7 +615,7 @@ TEST(Areas, HaveDifferentIdsForLargeNumbers) {
   layer.id = "units";
   for (const double key : {1234567.0, 1234568.0, 0.5})
     layer.areas.push_back({"", key, {}, Pattern::solid, 45, 1, {}});
-  const Group group = area_group(layer);
+  const Group group = area_group(layer, {});
   ASSERT_EQ(group.parts.size(), 3u);
   EXPECT_EQ(group.parts[0].id, "areas-units-1234567");
   EXPECT_EQ(group.parts[1].id, "areas-units-1234568");

@@ -3977,6 +3977,25 @@ export interface FigureTitleBlock {
   labels?: FigureTitleBlockLabels;
 }
 
+/** View on a sheet. A view among several. Members that are left out have the values of the figure. Without `view`, `camera`, `direction`, `normal` and `rollout`, the view has the direction of the view or camera of the figure. */
+export interface FigureView {
+  /** Slug or id of a saved view, with its own layers, surface images, light and section. */
+  view?: string;
+  /** As in `FigureRequest`. */
+  camera?: Camera;
+  direction?: FigureDirection;
+  /** As in `FigureRequest`. */
+  normal?: Point3;
+  /** As in `FigureRequest`. */
+  center?: Point3;
+  /** As in `FigureRequest`. A rollout has no labels. */
+  rollout?: FigureRollout;
+  /** The scale of this view only. Then each view has its own scale bar. Default: the common scale. */
+  scale?: number;
+  /** Text below the view. Default: the name of the saved view, if any. */
+  title?: string;
+}
+
 /** Figure to scale. A drawing to scale without perspective, on a sheet with a scale bar, legend and caption. A saved view, or the camera, layers, surface images and light, set its content. They also set the direction if no other member sets it. Without these members, the figure shows the default layers of the model from the top. */
 export interface FigureRequest {
   /** Slug or id of a saved view. */
@@ -4026,6 +4045,8 @@ export interface FigureRequest {
   /** Text in the legend after the title of a list that continues in another column. Default: "(continued)". */
   continued?: string;
   labels?: FigureLabels;
+  /** Several views in a grid on one sheet, with one legend of all of them. Their order is from left to right and from top to bottom. `scale` of the figure is the common scale of the views. By default, it is the largest round scale at which all views fit. Not together with `direction`, `normal`, `center` or `rollout` of the figure, and not in DXF files. */
+  views?: FigureView[];
 }
 
 /** File format of a report. `docx` can be edited in word processors. `pdf` is a PDF/A-2b file for archives. */

@@ -8,9 +8,11 @@ import type {
   FigureLabels,
   FigureRequest,
   FigureRollout,
+  FigureView,
   Point3,
 } from "../core/protocol.gen";
 import { keptBlockTexts, titleBlock, type BlockTexts, type KeptBlockTexts } from "./figure-block";
+import { kFewestViews, kViewsChoices, type ViewsChoice } from "./figure-views";
 import type { ViewContent } from "./views";
 
 export const kDirections: readonly FigureDirection[] = [
@@ -48,6 +50,8 @@ export const kFigureFrom: readonly FigureFrom[] = ["camera", ...kDirections, "fa
 
 /** Options that are kept from one figure to the next. */
 export interface FigureChoices {
+  /** Several views on the sheet have their own directions instead of `from`. */
+  views: ViewsChoice;
   from: FigureFrom;
   scale: number | null; // null for the largest scale that fits the sheet
   paper: Paper;
@@ -78,6 +82,7 @@ export interface Face {
 export type FigureShown = ViewContent | { view: string };
 
 export const usualFigure = (): FigureChoices => ({
+  views: "one",
   from: "camera",
   scale: null,
   paper: "a4",
@@ -108,6 +113,7 @@ export function figureChoices(kept: unknown): FigureChoices {
   const oneOf = <T>(value: unknown, choices: readonly T[], otherwise: T): T =>
     choices.includes(value as T) ? (value as T) : otherwise;
   return {
+    views: oneOf(known["views"], kViewsChoices, usual.views),
     from: oneOf(known["from"], kFigureFrom, usual.from),
     scale: isScale(known["scale"]) ? known["scale"] : usual.scale,
     paper: oneOf(known["paper"], kPapers, usual.paper),
@@ -124,28 +130,38 @@ export function figureChoices(kept: unknown): FigureChoices {
 
 /** Returns whether the figure is a sheet with texts, a legend and a picture. */
 export const hasSheet = ({ format }: FigureChoices): boolean => format !== "dxf";
+/** Returns whether the sheet has several views. A drawing for CAD programs is a single one. */
+export const hasViews = (choices: FigureChoices): boolean =>
+  choices.views !== "one" && hasSheet(choices);
+/** Returns whether the figure is a single rollout. */
+export const isRollout = (choices: FigureChoices): boolean =>
+  choices.from === "rollout" && !hasViews(choices);
 /** Returns whether the user can choose between pixels and outlines. */
-export const hasAreas = ({ from, format }: FigureChoices): boolean =>
-  from !== "rollout" && (format === "pdf" || format === "svg");
+export const hasAreas = (choices: FigureChoices): boolean =>
+  !isRollout(choices) && (choices.format === "pdf" || choices.format === "svg");
 /** Returns whether the figure has outlines. A drawing for CAD programs always has them. */
 export const hasOutlines = (choices: FigureChoices): boolean =>
   choices.format === "dxf" || (hasAreas(choices) && choices.areas === "outlines");
 
-/**
- * Builds the request. Returns null without the required face or rollout. Without `block`, the sheet
- * has no title block.
- */
+/** The parts of a request that not every figure has. */
+export interface FigureParts {
+  face?: Face | null;
+  labels?: FigureLabels | null;
+  rollout?: FigureRollout | null;
+  block?: BlockTexts | null; // null for no title block
+  views?: readonly FigureView[] | null; // null for a single view
+}
+
+/** Builds the request. Returns null without the required face, rollout or views. */
 export function figureRequest(
   shown: FigureShown,
   chosen: FigureChoices,
   words: FigureWords,
-  face: Face | null,
-  labels: FigureLabels | null,
-  rollout: FigureRollout | null = null,
-  block: BlockTexts | null = null,
+  parts: FigureParts = {},
 ): FigureRequest | null {
-  const { from, scale, paper, orientation, dpi, format, legend } = chosen;
-  const content = contentOf(shown, from, face, labels, rollout);
+  const { scale, paper, orientation, dpi, format, legend } = chosen;
+  const { block } = parts;
+  const content = contentOf(shown, chosen, parts);
   if (!content) return null;
   const written = Object.entries(words).flatMap(([name, text]) =>
     text.trim() === "" || !hasSheet(chosen) ? [] : [[name, text.trim()]],
@@ -168,11 +184,13 @@ export function figureRequest(
 /** Returns what the figure shows and from where. A rollout has neither camera, light nor labels. */
 function contentOf(
   shown: FigureShown,
-  from: FigureFrom,
-  face: Face | null,
-  labels: FigureLabels | null,
-  rollout: FigureRollout | null,
+  chosen: FigureChoices,
+  { face, labels, rollout = null, views }: FigureParts,
 ): FigureRequest | null {
+  const { from } = chosen;
+  const named = labels ? { labels } : {};
+  if (hasViews(chosen))
+    return views && views.length >= kFewestViews ? { ...shown, ...named, views: [...views] } : null;
   if (from === "rollout") {
     if (!rollout || "view" in shown) return rollout && { ...shown, rollout };
     const { layers, looks } = shown;
@@ -180,7 +198,7 @@ function contentOf(
   }
   if (from === "face" && !face) return null;
   const direction = from === "face" ? face! : from === "camera" ? {} : { direction: from };
-  return { ...shown, ...direction, ...(labels ? { labels } : {}) };
+  return { ...shown, ...direction, ...named };
 }
 
 /**

@@ -1673,6 +1673,21 @@ export const texts = {
     open: "Abbildung erstellen …",
     unroll: "Abrollung …",
     of_view: "Abbildung dieser Ansicht erstellen …",
+    views: {
+      title: "Ansichten auf dem Blatt",
+      one: "Eine",
+      saved: "Gespeicherte Ansichten …",
+      which: (least: number, most: number) => `Gespeicherte Ansichten, ${least} bis ${most}`,
+      few: (least: number) => `Wählen Sie mindestens ${least} gespeicherte Ansichten.`,
+      directions: {
+        top: "Oben",
+        bottom: "Unten",
+        front: "Vorne",
+        back: "Hinten",
+        left: "Links",
+        right: "Rechts",
+      },
+    },
     from: "Blickrichtung",
     as_view: "Wie in der Ansicht gespeichert",
     froms: {

@@ -1631,6 +1631,21 @@ export const texts = {
     open: "Create figure…",
     unroll: "Unrolled picture…",
     of_view: "Create figure of this view…",
+    views: {
+      title: "Views on the sheet",
+      one: "One",
+      saved: "Saved views…",
+      which: (least: number, most: number) => `Saved views, ${least} to ${most}`,
+      few: (least: number) => `Choose at least ${least} saved views.`,
+      directions: {
+        top: "Top",
+        bottom: "Bottom",
+        front: "Front",
+        back: "Back",
+        left: "Left",
+        right: "Right",
+      },
+    },
     from: "Seen from",
     as_view: "As saved in the view",
     froms: {

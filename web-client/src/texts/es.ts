@@ -1664,6 +1664,21 @@ export const texts = {
     open: "Crear figura…",
     unroll: "Desarrollo…",
     of_view: "Crear figura de esta vista…",
+    views: {
+      title: "Vistas en la hoja",
+      one: "Una",
+      saved: "Vistas guardadas…",
+      which: (least: number, most: number) => `Vistas guardadas, de ${least} a ${most}`,
+      few: (least: number) => `Elija al menos ${least} vistas guardadas.`,
+      directions: {
+        top: "Arriba",
+        bottom: "Abajo",
+        front: "Frente",
+        back: "Atrás",
+        left: "Izquierda",
+        right: "Derecha",
+      },
+    },
     from: "Punto de vista",
     as_view: "Como en la vista guardada",
     froms: {

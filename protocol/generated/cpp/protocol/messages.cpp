@@ -4924,6 +4924,35 @@ nlohmann::json to_json(const FigureTitleBlock& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, FigureView& value) {
+  read_optional_member(json, "view", value.view);
+  read_optional_member(json, "camera", value.camera);
+  read_optional_member(json, "direction", value.direction);
+  read_optional_member(json, "normal", value.normal);
+  read_optional_member(json, "center", value.center);
+  read_optional_member(json, "rollout", value.rollout);
+  read_optional_member(json, "scale", value.scale);
+  read_optional_member(json, "title", value.title);
+}
+
+nlohmann::json to_json(const FigureView& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "view", value.view);
+  write_optional_member(json, "camera", value.camera);
+  write_optional_member(json, "direction", value.direction);
+  write_optional_member(json, "normal", value.normal);
+  write_optional_member(json, "center", value.center);
+  write_optional_member(json, "rollout", value.rollout);
+  write_optional_member(json, "scale", value.scale);
+  write_optional_member(json, "title", value.title);
+  return json;
+}
+
+Result<void> check(const FigureView& value, const std::string& field) {
+  if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
 void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "view", value.view);
   read_optional_member(json, "camera", value.camera);
@@ -4950,6 +4979,7 @@ void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "provisional", value.provisional);
   read_optional_member(json, "continued", value.continued);
   read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "views", value.views);
 }
 
 nlohmann::json to_json(const FigureRequest& value) {
@@ -4979,6 +5009,7 @@ nlohmann::json to_json(const FigureRequest& value) {
   write_member(json, "provisional", value.provisional);
   write_member(json, "continued", value.continued);
   write_optional_member(json, "labels", value.labels);
+  write_optional_member(json, "views", value.views);
   return json;
 }
 

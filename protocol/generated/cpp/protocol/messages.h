@@ -399,6 +399,7 @@ enum class Schema {
   FigureRollout,
   FigureTitleBlockLabels,
   FigureTitleBlock,
+  FigureView,
   FigureRequest,
   ReportFormat,
   ReportLanguage,
@@ -435,7 +436,7 @@ enum class Schema {
   UnrolledLine,
   Unrolled,
 };
-constexpr int kSchemaCount = 409;
+constexpr int kSchemaCount = 410;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -3897,6 +3898,27 @@ nlohmann::json to_json(const FigureTitleBlock& value);
 template <>
 inline constexpr Schema kSchemaOf<FigureTitleBlock> = Schema::FigureTitleBlock;
 
+// View on a sheet. A view among several. Members that are left out have the values of the figure. Without `view`, `camera`, `direction`, `normal` and `rollout`, the view has the direction of the view or camera of the figure.
+struct FigureView {
+  // Slug or id of a saved view, with its own layers, surface images, light and section.
+  std::optional<std::string> view;
+  std::optional<strata::Camera> camera;  // As in `FigureRequest`.
+  std::optional<FigureDirection> direction;
+  std::optional<glm::dvec3> normal;  // As in `FigureRequest`.
+  std::optional<glm::dvec3> center;  // As in `FigureRequest`.
+  std::optional<FigureRollout> rollout;  // As in `FigureRequest`. A rollout has no labels.
+  // The scale of this view only. Then each view has its own scale bar. Default: the common scale.
+  std::optional<double> scale;
+  // Text below the view. Default: the name of the saved view, if any.
+  std::optional<std::string> title;
+  bool operator==(const FigureView&) const = default;
+};
+void read(const nlohmann::json& json, FigureView& value);
+nlohmann::json to_json(const FigureView& value);
+Result<void> check(const FigureView& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<FigureView> = Schema::FigureView;
+
 enum class FigureRequestPaper { a5, a4, a3 };
 std::string_view name(FigureRequestPaper value);
 void read(const nlohmann::json& json, FigureRequestPaper& value);
@@ -3969,6 +3991,11 @@ struct FigureRequest {
   // Text in the legend after the title of a list that continues in another column.
   std::string continued = "(continued)";
   std::optional<FigureLabels> labels;
+  // Several views in a grid on one sheet, with one legend of all of them. Their order is from left
+  // to right and from top to bottom. `scale` of the figure is the common scale of the views. By
+  // default, it is the largest round scale at which all views fit. Not together with `direction`,
+  // `normal`, `center` or `rollout` of the figure, and not in DXF files.
+  std::optional<std::vector<FigureView>> views;
   bool operator==(const FigureRequest&) const = default;
 };
 void read(const nlohmann::json& json, FigureRequest& value);

@@ -202,14 +202,87 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
   return {};
 }
 
+Result<void> check_sheet_of_views(const protocol::FigureRequest& body) {
+  const auto refused = [](const char* field) {
+    return fail(ErrorCode::invalid, "Setting of a single view",
+                "With `views`, each view has its own `" + std::string(field) + "`. Move `" +
+                    std::string(field) + "` to the views, or leave out `views`.",
+                field);
+  };
+  if (body.direction) return refused("direction");
+  if (body.normal) return refused("normal");
+  if (body.center) return refused("center");
+  if (body.rollout) return refused("rollout");
+  if (body.format == protocol::FigureFormat::dxf)
+    return fail(
+        ErrorCode::invalid, "DXF of several views",
+        "A DXF file contains a single drawing. Choose another format, or leave out `views`.",
+        "format");
+  return {};
+}
+
+// Returns the request for a view alone.
+protocol::FigureRequest body_of_view(const protocol::FigureRequest& body,
+                                     const protocol::FigureView& view) {
+  protocol::FigureRequest alone = body;
+  alone.views.reset();
+  alone.title_block.reset();
+  if (view.view) {
+    alone.view = view.view;
+    alone.camera.reset();
+    alone.layers.reset();
+    alone.looks.reset();
+    alone.light.reset();
+  }
+  if (view.camera) alone.camera = view.camera;
+  alone.direction = view.direction;
+  alone.normal = view.normal;
+  alone.center = view.center;
+  alone.scale = view.scale;
+  alone.rollout = view.rollout;
+  if (!view.rollout) return alone;
+  if (!view.camera) alone.camera.reset();  // of the figure
+  alone.light.reset();
+  alone.labels.reset();
+  alone.areas = protocol::FigureRequestAreas::pixels;
+  alone.tolerance_mm.reset();
+  return alone;
+}
+
+// Reads a sheet with several views. All of them show the same state of the layers.
+Result<FigureRequest> figure_of_views(const RouteContext& context, const Request& request,
+                                      std::shared_ptr<room::Room> room,
+                                      const protocol::FigureRequest& body) {
+  STRATA_TRY(check_sheet_of_views(body));
+  auto sheet = STRATA_TRY(figure_request(context, request, room, body));
+  sheet.from = "views";
+  for (std::size_t i = 0; i < body.views->size(); ++i) {
+    const protocol::FigureView& view = (*body.views)[i];
+    auto figure = figure_request(context, request, room, body_of_view(body, view));
+    if (!figure) {
+      const std::string at = "views[" + std::to_string(i) + "]";
+      return at_field(figure.error(),
+                      figure.error().field.empty() ? at : at + "." + figure.error().field);
+    }
+    figure->shown.at = sheet.shown.at;
+    if (!figure->rollout) figure->shown.provisional = sheet.shown.provisional;
+    figure->view_title = view.title.value_or(figure->view_title);
+    sheet.views.push_back(std::move(*figure));
+  }
+  return sheet;
+}
+
 }  // namespace
 
 Result<FigureRequest> read_figure_request(const RouteContext& context, const Request& request) {
   const auto body = STRATA_TRY(body_of<protocol::FigureRequest>(request));
   auto room = STRATA_TRY(open_room(context, request));
-  auto figure = STRATA_TRY(figure_request(context, request, std::move(room), body));
   const auto language = STRATA_TRY(requested_language(request));
-  figure.language = language;
+  auto figure = body.views ? figure_of_views(context, request, std::move(room), body)
+                           : figure_request(context, request, std::move(room), body);
+  if (!figure) return figure;
+  figure->language = language;
+  for (FigureRequest& view : figure->views) view.language = language;
   return figure;
 }
 
@@ -264,6 +337,7 @@ Result<FigureRequest> figure_request(const RouteContext& context, const Request&
         title_block(context, request, model, body.title.value_or(view_name), *body.title_block));
     figure.captions.block = block;
   }
+  figure.view_title = std::move(view_name);
   figure.waiting_label = body.provisional;
   return figure;
 }

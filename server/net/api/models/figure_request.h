@@ -6,10 +6,11 @@
 
 namespace strata::net {
 
-// Reads the figure from the request body. Refuses (422) a view together with settings that it
-// replaces, two directions, a normal without a direction, labels for a layer without keys, a
-// rollout together with settings that have no effect on it, outlines that the format or the rollout
-// cannot have, and a tolerance without outlines.
+// Reads the figure, or the sheet of several views, from the request body. Refuses (422) a view
+// together with settings that it replaces, two directions, a normal without a direction, labels for
+// a layer without keys, a rollout together with settings that have no effect on it, outlines that
+// the format or the rollout cannot have, a tolerance without outlines, and several views together
+// with settings of a single one.
 Result<app::FigureRequest> read_figure_request(const RouteContext& context, const Request& request);
 
 // As read_figure_request, for a body that is a part of another request. The names in the legend

@@ -1,5 +1,5 @@
 // Figures and condition reports, which are files for one user.
-#include "app/figures/rollout_figure.h"
+#include "app/figures/figures.h"
 #include "app/reports/report.h"
 #include "net/api/models/figure_request.h"
 #include "net/api/models/made_file.h"
@@ -17,13 +17,11 @@ Result<Response> answer_figure(const RouteContext& context,
   auto figure = STRATA_TRY(read_figure_request(context, request));
   const auto room = figure.room;
   const std::int64_t sequence = *figure.shown.at;
-  return respond_with_file(
-      context, request, *room, sequence,
-      [&context, budget, figure = std::move(figure)](Progress& progress) {
-        const auto& folder = context.options.upload_dir;
-        return figure.rollout ? app::make_rollout_figure(context, *budget, figure, folder, progress)
-                              : app::make_figure(context.store, *budget, figure, folder, progress);
-      });
+  return respond_with_file(context, request, *room, sequence,
+                           [&context, budget, figure = std::move(figure)](Progress& progress) {
+                             const auto& folder = context.options.upload_dir;
+                             return app::make_figure(context, *budget, figure, folder, progress);
+                           });
 }
 
 Result<Response> answer_report(const RouteContext& context,

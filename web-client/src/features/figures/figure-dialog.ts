@@ -10,7 +10,9 @@ import {
   hasAreas,
   hasOutlines,
   hasSheet,
+  hasViews,
   isDpi,
+  isRollout,
   kAreas,
   kDpiRange,
   kFigureFrom,
@@ -27,8 +29,9 @@ import {
   type FigureWords,
 } from "../../domain/figures";
 import type { BlockField, BlockTexts } from "../../domain/figure-block";
+import { kFewestViews, viewsOf } from "../../domain/figure-views";
 import { readNumber, typedNumber } from "../../core/locale";
-import type { FigureRequest, View } from "../../core/protocol.gen";
+import type { FigureRequest, FigureView, View } from "../../core/protocol.gen";
 import type { ProblemBody } from "../../core/types";
 import "../../ui/dialog";
 import "./face-hint";
@@ -42,6 +45,7 @@ import { hasKeyboard } from "../../ui/keyboard";
 import type { ModelSession } from "../../session/model-session";
 import { fieldProblem, typingProblem, type FieldProblem } from "./figure-problems";
 import { wordFields } from "./figure-words";
+import { nameOfViews, viewsFields, viewsStyles } from "./figure-views-fields";
 import { blockFields, blockStyles, withBlockWords } from "./figure-block-fields";
 import { rolloutFields, rolloutStyles } from "./rollout-fields";
 import { kNewRollout, rolloutOf, wrongSurface, type RolloutInput } from "./rollout-request";
@@ -88,6 +92,7 @@ export class StrataFigureDialog extends LitElement {
     awaitedFileStyles,
     figureStyles,
     blockStyles,
+    viewsStyles,
     rolloutStyles,
   ];
 
@@ -131,7 +136,8 @@ export class StrataFigureDialog extends LitElement {
     const rollout = model && rolloutOf(this._rollout, model);
     const labels = labelsOf(session);
     const block = this._choices.title_block ? this.block : null;
-    const request = figureRequest(shown, this._choices, written, face, labels, rollout, block);
+    const parts = { face, labels, rollout, block, views: this.views };
+    const request = figureRequest(shown, this._choices, written, parts);
     return (
       request && {
         ...withBlockWords(request),
@@ -139,6 +145,12 @@ export class StrataFigureDialog extends LitElement {
         continued: texts.figures.continued,
       }
     );
+  }
+
+  private get views(): FigureView[] | null {
+    const { figures, views } = this.session;
+    const known = figures.draft.views.filter((id) => views.all.some((view) => view.id === id));
+    return viewsOf(this._choices.views, known, (each) => words.views.directions[each]);
   }
 
   private get block(): BlockTexts {
@@ -153,17 +165,38 @@ export class StrataFigureDialog extends LitElement {
     return html`<strata-dialog vast heading=${view ? words.title_of_view(view.name) : words.title} way_out=${this._file.running ? "" : texts.close} @closed=${this.onClosed}>
       <div class="editor">
         <form id="figure" class="fields" novalidate @submit=${this.onSubmit}>
-          ${this.direction()} ${this.scale()} ${this.sheet()} ${hasSheet(this._choices) ? this.resolution() : nothing} ${this.format()} ${this.areas()}
+          ${hasSheet(this._choices) ? this.viewsField() : nothing} ${hasViews(this._choices) ? nothing : this.direction()} ${this.scale()} ${this.sheet()} ${hasSheet(this._choices) ? this.resolution() : nothing} ${this.format()} ${this.areas()}
           ${hasSheet(this._choices) ? html`${this.written()} ${this.titleBlock()} ${this.legend()}` : nothing} ${this.labels()}
         </form>
         <div class="sheet">
           ${this.warning()}
-          <strata-figure-preview .session=${session} .request=${this.requestNow} alt=${this.description()} @told=${this.onTold}></strata-figure-preview>
+          <strata-figure-preview .session=${session} .request=${this.requestNow} missing=${this.missing} alt=${this.description()} @told=${this.onTold}></strata-figure-preview>
           <p class="hint">${words.preview_hint}</p>
         </div>
       </div>
       ${this.actions()}
     </strata-dialog>`;
+  }
+
+  private viewsField(): TemplateResult {
+    const { draft } = this.session.figures;
+    return viewsFields(this.session, {
+      chosen: this._choices.views,
+      saved: draft.views,
+      wrong: this.isWrong("views"),
+      told: this.toldAt("views"),
+      problem: this.problemOf("views"),
+      choose: (views) => this.choose({ views }),
+      tick: (saved) => {
+        draft.views = saved;
+        this.choose({ views: "saved" });
+      },
+    });
+  }
+
+  /** What the request lacks. */
+  private get missing(): string {
+    return hasViews(this._choices) ? words.views.few(kFewestViews) : words.no_face;
   }
 
   private direction(): TemplateResult {
@@ -363,7 +396,7 @@ export class StrataFigureDialog extends LitElement {
   }
 
   private labels(): TemplateResult | typeof nothing {
-    if (this._choices.from === "rollout") return nothing;
+    if (isRollout(this._choices)) return nothing;
     return labelFields(this.session, {
       wrong: this.isWrong("labels"),
       told: this.toldAt("labels"),
@@ -395,7 +428,8 @@ export class StrataFigureDialog extends LitElement {
   /** Returns a description of the preview for screen readers. */
   private description(): string {
     const { from, scale, paper } = this._choices;
-    const seen = from === "camera" && this.view ? words.as_view : nameOf(from);
+    const single = from === "camera" && this.view ? words.as_view : nameOf(from);
+    const seen = hasViews(this._choices) ? nameOfViews(this._choices.views) : single;
     return words.preview(paper.toUpperCase(), seen, scale === null ? words.fits : scaleText(scale));
   }
 
@@ -525,9 +559,10 @@ export class StrataFigureDialog extends LitElement {
     event.preventDefault();
     const request = this.requestNow;
     if (!this._file.isFree) return;
-    const problem = request ? this.typingProblem : { field: "from", text: words.no_face };
+    const field = hasViews(this._choices) ? "views" : "from";
+    const problem = request ? this.typingProblem : { field, text: this.missing };
     const { rollout } = this.session.figures.draft;
-    const isWrong = this._choices.from === "rollout" && rollout && wrongSurface(rollout) !== null;
+    const isWrong = isRollout(this._choices) && rollout && wrongSurface(rollout) !== null;
     if (request && !problem && !isWrong) {
       void this.make(request);
     } else {

@@ -24,6 +24,8 @@ export class StrataFigurePreview extends LitElement {
       before === undefined || JSON.stringify(now) !== JSON.stringify(before),
   })
   request: FigureRequest | null = null;
+  /** The text that is shown as long as the options are incomplete. */
+  @property() missing = "";
   /** The text alternative of the image. */
   @property() alt = "";
   @state() private _state: "nothing" | "waiting" | "drawn" | "failed" = "nothing";
@@ -117,7 +119,7 @@ export class StrataFigurePreview extends LitElement {
     return html`<figure class=${state} data-state=${state} aria-busy=${state === "waiting"}>
       ${shows ? html`<img src=${picture} alt=${this.alt} />` : nothing}
       ${state === "waiting" ? html`<span class="working" role="status"><i></i>${words.drawing}</span>` : nothing}
-      ${state === "nothing" ? html`<p class="told hint">${words.no_face}</p>` : nothing}
+      ${state === "nothing" ? html`<p class="told hint">${this.missing}</p>` : nothing}
       ${
         state === "failed"
           ? html`<div class="told">

@@ -24,6 +24,7 @@ const kFieldOf: Readonly<Record<string, string>> = {
   tolerance_mm: "areas",
 };
 const kFields: readonly string[] = [
+  "views",
   "from",
   "scale",
   "paper",

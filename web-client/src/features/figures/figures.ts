@@ -19,12 +19,14 @@ export class Figures {
     face: Face | null;
     rollout: RolloutInput | null; // null before the first rollout
     block: BlockTexts;
+    views: readonly number[]; // the chosen saved views, by id
   } = {
     words: { title: "", caption: "", credit: "" },
     labels: null,
     face: null,
     rollout: null,
     block: emptyBlock(),
+    views: [],
   };
 
   constructor(

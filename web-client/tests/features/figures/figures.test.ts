@@ -27,6 +27,7 @@ import {
   type FigureChoices,
   type FigureWords,
 } from "../../../src/domain/figures";
+import { kViewsChoices, toggledView, viewsOf } from "../../../src/domain/figure-views";
 import { emptyBlock } from "../../../src/domain/figure-block";
 import { withBlockWords } from "../../../src/features/figures/figure-block-fields";
 import { setLocale } from "../../../src/core/locale";
@@ -112,6 +113,7 @@ describe("a scale that is typed", () => {
 
 describe("choices that a browser kept", () => {
   const aChoice: fc.Arbitrary<FigureChoices> = fc.record({
+    views: fc.constantFrom(...kViewsChoices),
     from: fc.constantFrom("camera" as const, "face" as const, ...kDirections),
     scale: fc.option(fc.constantFrom(...kScales, 0.01, 1_000_000, 37.5)),
     paper: fc.constantFrom(...kPapers),
@@ -142,6 +144,7 @@ describe("choices that a browser kept", () => {
     for (const nonsense of [null, undefined, 3, "x", [], {}])
       expect(figureChoices(nonsense)).toEqual(usualFigure());
     const kept = {
+      views: "two",
       from: "north",
       scale: "5",
       paper: "a0",
@@ -178,7 +181,7 @@ describe("choices that a browser kept", () => {
 
 describe("what is asked for", () => {
   it("is all that the person sees, and only what was chosen or written besides", () => {
-    expect(figureRequest(shown, usualFigure(), unwritten, null, null)).toEqual({
+    expect(figureRequest(shown, usualFigure(), unwritten)).toEqual({
       ...shown,
       paper: "a4",
       dpi: 300,
@@ -186,6 +189,7 @@ describe("what is asked for", () => {
       legend: true,
     });
     const choices: FigureChoices = {
+      views: "one",
       from: "front",
       scale: 5,
       paper: "a3",
@@ -199,7 +203,9 @@ describe("what is asked for", () => {
       block_texts: { organization: "Museum", author: "" },
     };
     const words = { title: "West wall ", caption: "After\ncleaning", credit: "Museum" };
-    expect(figureRequest(shown, choices, words, face, { layer: 7, column: "name" })).toEqual({
+    expect(
+      figureRequest(shown, choices, words, { face, labels: { layer: 7, column: "name" } }),
+    ).toEqual({
       ...shown,
       direction: "front",
       scale: 5,
@@ -216,15 +222,20 @@ describe("what is asked for", () => {
   });
 
   it("is a named view's where one is meant", () => {
-    expect(
-      figureRequest({ view: "12" }, { ...usualFigure(), from: "top" }, unwritten, null, null),
-    ).toEqual({ view: "12", direction: "top", paper: "a4", dpi: 300, format: "pdf", legend: true });
+    expect(figureRequest({ view: "12" }, { ...usualFigure(), from: "top" }, unwritten)).toEqual({
+      view: "12",
+      direction: "top",
+      paper: "a4",
+      dpi: 300,
+      format: "pdf",
+      legend: true,
+    });
   });
 
   it("is square to a face that was picked, and nothing before", () => {
     const choices: FigureChoices = { ...usualFigure(), from: "face" };
-    expect(figureRequest(shown, choices, unwritten, null, null)).toBeNull();
-    const request = figureRequest(shown, choices, unwritten, face, null)!;
+    expect(figureRequest(shown, choices, unwritten)).toBeNull();
+    const request = figureRequest(shown, choices, unwritten, { face })!;
     expect([request.normal, request.center, request.direction]).toEqual([
       face.normal,
       face.center,
@@ -236,8 +247,8 @@ describe("what is asked for", () => {
     const choices: FigureChoices = { ...usualFigure(), from: "rollout", scale: 2 };
     const rollout = { side: "inside" as const, relief: true };
     const labels = { layer: 7, column: "name" };
-    expect(figureRequest(shown, choices, unwritten, face, labels)).toBeNull();
-    expect(figureRequest(shown, choices, unwritten, face, labels, rollout)).toEqual({
+    expect(figureRequest(shown, choices, unwritten, { face, labels })).toBeNull();
+    expect(figureRequest(shown, choices, unwritten, { face, labels, rollout })).toEqual({
       layers: shown.layers,
       looks: shown.looks,
       rollout,
@@ -247,9 +258,9 @@ describe("what is asked for", () => {
       format: "pdf",
       legend: true,
     });
-    const ofView = figureRequest({ view: "12" }, choices, unwritten, face, labels, rollout)!;
+    const ofView = figureRequest({ view: "12" }, choices, unwritten, { face, labels, rollout })!;
     expect([ofView.view, ofView.rollout, ofView.labels]).toEqual(["12", rollout, undefined]);
-    expect(figureRequest(shown, usualFigure(), unwritten, null, null, rollout)).not.toHaveProperty(
+    expect(figureRequest(shown, usualFigure(), unwritten, { rollout })).not.toHaveProperty(
       "rollout",
     );
   });
@@ -258,7 +269,7 @@ describe("what is asked for", () => {
     const outlined = { ...usualFigure(), areas: "outlines" as const, tolerance_mm: 0.2 };
     const rollout = { side: "inside" as const, relief: true };
     const asked = (choices: FigureChoices): unknown[] => {
-      const request = figureRequest(shown, choices, unwritten, face, null, rollout)!;
+      const request = figureRequest(shown, choices, unwritten, { face, rollout })!;
       const preview = previewRequest(request);
       expect([preview.format, preview.areas, preview.tolerance_mm]).toEqual([
         "png",
@@ -279,8 +290,7 @@ describe("what is asked for", () => {
   it("has no texts and no legend in DXF files, because they would have no effect", () => {
     const words = { title: "West wall", caption: "", credit: "Museum" };
     const chosen = { ...usualFigure(), legend: true };
-    const asked = (format: "dxf" | "pdf") =>
-      figureRequest(shown, { ...chosen, format }, words, null, null)!;
+    const asked = (format: "dxf" | "pdf") => figureRequest(shown, { ...chosen, format }, words)!;
     const { title, credit, legend } = asked("pdf");
     expect([title, credit, legend]).toEqual(["West wall", "Museum", true]);
     for (const name of ["title", "caption", "credit", "legend"])
@@ -289,19 +299,43 @@ describe("what is asked for", () => {
     expect(previewRequest(asked("dxf"))).toMatchObject({ legend: false, title: "", credit: "" });
   });
 
+  it("has the views of a set or the chosen saved views instead of a direction", () => {
+    const labels = { layer: 7, column: "name" };
+    const rollout = { relief: true };
+    const asked = (chosen: Partial<FigureChoices>, saved: readonly number[] = []) => {
+      const choices: FigureChoices = { ...usualFigure(), from: "rollout", ...chosen };
+      const views = viewsOf(choices.views, saved, (each) => `<${each}>`);
+      return figureRequest(shown, choices, unwritten, { labels, rollout, views });
+    };
+    const sides = asked({ views: "sides" })!;
+    expect(sides).toMatchObject({ ...shown, labels });
+    expect(sides.views).toEqual([
+      { direction: "front", title: "<front>" },
+      { direction: "back", title: "<back>" },
+      { direction: "left", title: "<left>" },
+      { direction: "right", title: "<right>" },
+    ]);
+    for (const name of ["direction", "normal", "rollout"]) expect(sides).not.toHaveProperty(name);
+    expect(previewRequest(sides).views).toEqual(sides.views);
+    expect(asked({ views: "saved" }, [4])).toBeNull();
+    expect(asked({ views: "saved" }, [4, 2])!.views).toEqual([{ view: "4" }, { view: "2" }]);
+    expect(asked({ views: "sides", format: "dxf", from: "front" })).not.toHaveProperty("views");
+    expect(asked({ views: "sides", areas: "outlines" })).toMatchObject({ areas: "outlines" });
+    expect(asked({ views: "one" })).not.toHaveProperty("views");
+  });
+
+  it("has saved views in the order in which they were chosen, at most six", () => {
+    let saved: readonly number[] = [];
+    for (const id of [3, 1, 2, 5, 4, 7, 6]) saved = toggledView(saved, id);
+    expect(saved).toEqual([3, 1, 2, 5, 4, 7]);
+    expect(toggledView(saved, 1)).toEqual([3, 2, 5, 4, 7]);
+  });
+
   it("has the filled fields of a title block, and the direction as its usual title", () => {
     const block = { ...emptyBlock(), author: " Ada Lovelace ", sheet: "2/5", status: "  " };
     const asked = (chosen: Partial<FigureChoices>, written = unwritten) =>
       withBlockWords(
-        figureRequest(
-          shown,
-          { ...usualFigure(), from: "front", ...chosen },
-          written,
-          null,
-          null,
-          null,
-          block,
-        )!,
+        figureRequest(shown, { ...usualFigure(), from: "front", ...chosen }, written, { block })!,
       );
     const { labels, ...filled } = asked({}).title_block!;
     expect(filled).toEqual({ author: "Ada Lovelace", sheet: "2/5" });
@@ -311,7 +345,7 @@ describe("what is asked for", () => {
     expect(asked({ from: "camera" })).not.toHaveProperty("title");
     expect(asked({ format: "dxf" })).not.toHaveProperty("title_block");
     expect(previewRequest(asked({})).title_block).toEqual(asked({}).title_block);
-    const bare = figureRequest(shown, usualFigure(), unwritten, null, null)!;
+    const bare = figureRequest(shown, usualFigure(), unwritten)!;
     expect(withBlockWords(bare)).toEqual(bare);
   });
 
@@ -320,8 +354,6 @@ describe("what is asked for", () => {
       shown,
       { ...usualFigure(), paper: "a3", dpi: 600, scale: 5 },
       unwritten,
-      null,
-      null,
     )!;
     const preview = previewRequest(request);
     expect(preview).toEqual({ ...request, dpi: preview.dpi, format: "png" });
