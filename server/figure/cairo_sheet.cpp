@@ -38,9 +38,11 @@ void draw(cairo_t* context, const Words& words) {
   int width = 0, height = 0;
   pango_layout_get_size(layout.get(), &width, &height);
   const double share = words.anchor == Anchor::start ? 0 : words.anchor == Anchor::middle ? 0.5 : 1;
-  const double x = words.at.x - share * width / PANGO_SCALE;
-  const double y =
-      words.at.y - static_cast<double>(pango_layout_get_baseline(layout.get())) / PANGO_SCALE;
+  const double x = -share * width / PANGO_SCALE;  // relative to the point on the baseline
+  const double y = -static_cast<double>(pango_layout_get_baseline(layout.get())) / PANGO_SCALE;
+  cairo_save(context);
+  cairo_translate(context, words.at.x, words.at.y);
+  cairo_rotate(context, -words.angle / 360 * kFullTurn);
   if (words.halo) {
     cairo_move_to(context, x, y);
     pango_cairo_layout_path(context, layout.get());
@@ -60,6 +62,7 @@ void draw(cairo_t* context, const Words& words) {
   } else {
     pango_cairo_show_layout(context, layout.get());
   }
+  cairo_restore(context);
 }
 
 void add_rings(cairo_t* context, const Area& area) {

@@ -29,6 +29,7 @@ struct Words {
   bool bold = false;
   Anchor anchor = Anchor::start;
   bool halo = false;  // white border for text over a drawing
+  double angle = 0;   // around `at`, in degrees counterclockwise
 };
 
 // All areas of one class or record. A point is inside if it is inside an odd number of rings.

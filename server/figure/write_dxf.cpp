@@ -156,6 +156,7 @@ class DxfWriter {
     for (const LayerVectors& layer : drawing.marks)
       if (!layer.marks.empty()) layers_.push_back({names.add(layer.name), std::nullopt});
     if (!drawing.labels.empty()) layers_.push_back({names.add("Labels"), std::nullopt});
+    if (!drawing.dimensions.empty()) layers_.push_back({names.add("Dimensions"), std::nullopt});
   }
 
   // Returns the facts of the written file.
@@ -188,7 +189,8 @@ class DxfWriter {
         STRATA_TRY(add_class((layer_of_file++)->name, layer, area));
     for (const LayerVectors& layer : drawing_.marks)
       if (!layer.marks.empty()) STRATA_TRY(add_marks((layer_of_file++)->name, layer));
-    if (!drawing_.labels.empty()) add_labels(layer_of_file->name);
+    if (!drawing_.labels.empty()) add_labels((layer_of_file++)->name);
+    if (!drawing_.dimensions.empty()) add_dimensions(layer_of_file->name);
     return {};
   }
 
@@ -332,6 +334,26 @@ class DxfWriter {
       pairs_.number(31, 0);
       pairs_.text(100, "AcDbText");
       pairs_.whole(73, 2);  // at half height
+    }
+  }
+
+  // Lines and texts, because a DIMENSION would need a block with the same lines and texts.
+  void add_dimensions(const std::string& name) {
+    for (const Dimension& dimension : drawing_.dimensions) {
+      for (const auto& [from, to] : dimension.lines) polyline(name, {from, to}, false, {});
+      for (const auto& [from, to] : dimension.ticks) polyline(name, {from, to}, false, {});
+      begin_entity("TEXT", name, {});
+      pairs_.text(100, "AcDbText");
+      add_point(10, dimension.at);
+      pairs_.number(30, 0);
+      pairs_.number(40, kDimensionText_mm * drawing_.scale);
+      pairs_.text(1, drawn_text(dimension.text));
+      pairs_.number(50, dimension.angle);
+      pairs_.whole(72, 1);  // centered
+      add_point(11, dimension.at);
+      pairs_.number(31, 0);
+      pairs_.text(100, "AcDbText");
+      pairs_.whole(73, 0);  // on the baseline
     }
   }
 

@@ -48,6 +48,9 @@ void write(std::ostream& out, const Path& path) {
 void write(std::ostream& out, const Words& words) {
   out << "<text x=\"" << short_number(words.at.x) << "\" y=\"" << short_number(words.at.y)
       << "\" font-size=\"" << short_number(words.size_mm) << '"';
+  if (words.angle != 0)
+    out << " transform=\"rotate(" << short_number(-words.angle) << ' ' << short_number(words.at.x)
+        << ' ' << short_number(words.at.y) << ")\"";
   if (words.bold) out << " font-weight=\"bold\"";
   if (words.anchor != Anchor::start)
     out << " text-anchor=\"" << (words.anchor == Anchor::middle ? "middle" : "end") << '"';

@@ -66,14 +66,15 @@ Result<std::shared_ptr<const TemporaryFile>> make_dxf(const Services& services, 
   const figure::Drawing& drawing = view->drawing();
   auto labels = STRATA_TRY(view->labels());
   auto vectors = STRATA_TRY(view->vectors(kOutlines, progress));
+  auto dimensions = view->dimensions();
   const auto is_empty = [](const figure::LayerVectors& layer) {
     return layer.areas.empty() && layer.marks.empty();
   };
   if (std::ranges::all_of(vectors.areas, is_empty) &&
-      std::ranges::all_of(vectors.marks, is_empty) && labels.empty())
+      std::ranges::all_of(vectors.marks, is_empty) && labels.empty() && dimensions.empty())
     return fail(ErrorCode::invalid, "Nothing to draw",
-                "A DXF file contains only classes and records, and the drawing has none. Show a "
-                "layer with classes or records, or choose another format.",
+                "A DXF file contains only classes, records and dimensions, and the drawing has "
+                "none. Show a layer with classes or records, or choose another format.",
                 "format");
   const figure::Box& box = view->placed().box;
   const double mm_per_unit = drawing.metres_per_unit * 1000;
@@ -81,6 +82,7 @@ Result<std::shared_ptr<const TemporaryFile>> make_dxf(const Services& services, 
   const figure::DxfDrawing dxf{std::move(vectors.areas),
                                std::move(vectors.marks),
                                std::move(labels),
+                               std::move(dimensions),
                                box,
                                drawing.scale,
                                drawing.center * mm_per_unit + glm::dvec2(-half_mm.x, half_mm.y)};

@@ -13,6 +13,7 @@
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
 #include "domain/tables/table.h"
+#include "figure/dimension.h"
 #include "figure/drawing.h"
 #include "figure/files.h"
 #include "figure/layout.h"
@@ -62,6 +63,11 @@ struct FigureRequest {
     Column column;
   };
   std::optional<Labels> labels;
+  struct Dimension {
+    glm::dvec3 from{0}, to{0};  // in world coordinates
+    figure::DimensionDirection direction = figure::DimensionDirection::aligned;
+  };
+  std::vector<Dimension> dimensions{};
   // Several views on one sheet instead of one. Of a view, the members above that describe the sheet
   // have no effect. `scale` is that of the view only, and `view_title` the text below it.
   std::vector<FigureRequest> views{};

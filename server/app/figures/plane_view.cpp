@@ -5,6 +5,7 @@
 
 #include "app/figures/figure_legend.h"
 #include "app/figures/record_labels.h"
+#include "app/reports/report_words.h"
 #include "domain/scene/compass.h"
 #include "mesh/surface/geometry.h"
 #include "room/pictures.h"
@@ -86,6 +87,22 @@ Result<std::vector<figure::Label>> PlaneView::labels() const {
   return record_labels(services_.store, request_, drawing_, place_.box.size);
 }
 
+std::vector<figure::Dimension> PlaneView::dimensions() const {
+  const ReportWords& words = words_in(ReportLanguage::en);
+  const double mm_per_unit = drawing_.metres_per_unit * kMmPerMetre / drawing_.scale;
+  const auto on_sheet = [&](const glm::dvec3& world) {
+    const glm::dvec2 apart = glm::dvec2(drawing_.plane.of(world)) - drawing_.center;
+    return place_.box.corner + place_.box.size / 2.0 + mm_per_unit * glm::dvec2(apart.x, -apart.y);
+  };
+  std::vector<figure::DimensionPoints> points;
+  for (const auto& wanted : request_.dimensions) {
+    figure::DimensionPoints& each = points.emplace_back(
+        figure::DimensionPoints{on_sheet(wanted.from), on_sheet(wanted.to), wanted.direction});
+    each.text = length_in(words, figure::measured_mm(each) * drawing_.scale / kMmPerMetre);
+  }
+  return figure::place_dimensions(points, place_.box);
+}
+
 Result<FigureVectors> PlaneView::vectors(const Stage& stage, Progress& progress) const {
   return figure_vectors(services_.store, budget_, request_, drawing_, place_.box, stage, progress);
 }
@@ -95,13 +112,16 @@ Result<ViewContent> PlaneView::content(const Stage& stage, Progress& progress) c
   content.north = north_on(request_.plane, request_.room->model());
   auto labels = STRATA_TRY(this->labels());
   content.labels = std::move(labels);
-  if (!request_.outline_tolerance_mm) return content;
-  auto found = STRATA_TRY(vectors(stage, progress));
-  for (figure::LayerVectors& layer : found.areas)
-    content.below.push_back(figure::area_group(std::move(layer), place_.box));
-  for (figure::LayerVectors& layer : found.marks)
-    content.below.push_back(figure::mark_group(std::move(layer), place_.box));
-  content.held = std::move(found.held);
+  if (request_.outline_tolerance_mm) {
+    auto found = STRATA_TRY(vectors(stage, progress));
+    for (figure::LayerVectors& layer : found.areas)
+      content.below.push_back(figure::area_group(std::move(layer), place_.box));
+    for (figure::LayerVectors& layer : found.marks)
+      content.below.push_back(figure::mark_group(std::move(layer), place_.box));
+    content.held = std::move(found.held);
+  }
+  if (const auto placed = dimensions(); !placed.empty())
+    content.below.push_back(figure::dimension_group(placed, place_.box));
   return content;
 }
 

@@ -23,6 +23,7 @@ class PlaneView : public SheetView {
 
   const figure::Drawing& drawing() const { return drawing_; }
   Result<std::vector<figure::Label>> labels() const;
+  std::vector<figure::Dimension> dimensions() const;
   Result<FigureVectors> vectors(const Stage& stage, Progress& progress) const;
 
  private:

@@ -19,7 +19,7 @@ struct Stage {
   }
 };
 
-// What a view shows besides its picture.
+// What a view shows in addition to its picture.
 struct ViewContent {
   std::optional<glm::dvec2> north{};
   std::vector<figure::Label> labels{};

@@ -1,12 +1,15 @@
 """Sheets of figures: a title block with texts of the model, the project and the request, in the same
-place in all file formats, and several views with one scale and one legend."""
+place in all file formats, several views with one scale and one legend, and dimensions."""
 import datetime
+import io
+import math
 import os
 import re
 import subprocess
 import tempfile
 import xml.etree.ElementTree as xml
 
+import ezdxf
 import numpy
 import pytest
 from support import tiff
@@ -19,7 +22,8 @@ PLAIN = {"direction": "top", "dpi": 100, "light": {"mode": "unlit"}, "looks": []
 
 
 def figure(server, expect=200, token=True, **wish):
-    answer = server.request("POST", f"{M}/figures", {**PLAIN, **wish}, token=token)
+    wish = {name: value for name, value in {**PLAIN, **wish}.items() if value is not None}
+    answer = server.request("POST", f"{M}/figures", wish, token=token)
     assert answer.status == expect, (wish, answer)
     return answer
 
@@ -164,8 +168,8 @@ def test_formats(server):
         )
         with open(path[:-4] + ".png", "rb") as page:
             of_pdf = numpy.array(pixels(page.read()))
-    for expected in ("Museum of Everything", "Sheet (1884.7)", "Draft", "1 : 1", "Checked by"):
-        assert expected in words, (expected, words)
+    for expected in ("Museum of Everything", "Sheet (1884.7)", "Draft", "1:1", "Checked by"):
+        assert expected in words.replace(" : ", ":"), (expected, words)
     for picture in (rows, of_pdf):
         dark = picture.min(axis=2) < 128
         (left, top), (right, bottom) = (
@@ -336,7 +340,7 @@ def test_views_of_a_sheet(server, ball):
             {"view": "with-marks"},
             {"view": "without", "title": "Bare"},
             {"direction": "right"},
-            {"rollout": axis, "scale": 2},
+            {"rollout": axis, "scale": 4},
             {"normal": [1, 1, 0], "center": [0, 0, 0]},
         ],
     }
@@ -347,11 +351,11 @@ def test_views_of_a_sheet(server, ball):
     assert len(ids) == len(set(ids)), "ids of views differ"
     assert {"areas-marks-view-3", "areas-marks-view-5"} <= set(ids), ids
     assert not {"areas-marks-view-2", "areas-marks-view-4"} & set(ids), ids
-    texts = [group_of(svg, f"view-{i}")[1] for i in range(1, 6)]
-    assert [each[:1] for each in texts] == [["With marks"], ["Bare"], [], [], []], texts
+    titles = [group_of(svg, f"view-{i}") for i in range(1, 6)]
+    assert [each and each[1] for each in titles] == [["With marks"], ["Bare"], None, None, None]
     assert any("angles" in each or "degrees" in each or "ruler" in each for each in ids), ids
     scale = group_of(svg, "title-block")[1]
-    assert any(re.fullmatch(r"1 : [\d.]+, 1 : 2|1 : 2", each) for each in scale), scale
+    assert any(re.fullmatch(r"1 : [\d.]+, 1 : 4", each) for each in scale), scale
     # outlines are clipped at the boxes of their views
     boxes = boxes_of(svg)
     rects = [
@@ -371,6 +375,123 @@ def test_views_of_a_sheet(server, ball):
             del more["areas"]
         answer = server.request("POST", "/models/ball/figures", more)
         assert answer.status == 200 and len(answer.body) > 1000, answer
+
+
+def length_in_mm(text):
+    number, unit = text.split()
+    return float(number) * {"mm": 1, "cm": 10, "m": 1000}[unit]
+
+
+def test_dimensions_measure_the_drawing(server):
+    """The text of a dimension is the length on the drawing plane, and its line has this length to
+    scale."""
+    corners = {"a": [0, 0, 0], "b": [100, 0, 0], "c": [100, 60, 0], "d": [20, 30, 0]}
+    for direction, scale in (("top", 1), ("top", 2.5), ("bottom", 1), ("front", 1)):
+        for start, end in ("ab", "bc", "ad", "da", "ac"):
+            x, y, z = numpy.subtract(corners[end], corners[start])
+            across, up = {"top": (x, y), "bottom": (x, -y), "front": (x, z)}[direction]
+            for kind, length in (
+                ("aligned", numpy.hypot(across, up)),
+                ("horizontal", abs(across)),
+                ("vertical", abs(up)),
+            ):
+                line = {"from": corners[start], "to": corners[end], "direction": kind}
+                svg = figure(
+                    server,
+                    format="svg",
+                    dpi=50,
+                    direction=direction,
+                    scale=scale,
+                    dimensions=[line],
+                ).body
+                found = group_of(svg, "dimensions")
+                if length < 0.5:
+                    assert found is None
+                    continue
+                paths, texts = found
+                assert abs(length_in_mm(texts[0]) - length) < 1e-3 * length, (line, texts)
+                of_line = paths[-3]  # before the two ticks
+                assert abs(numpy.hypot(*(of_line[1] - of_line[0])) * scale - length) < 0.01
+
+
+def test_dimensions_in_all_formats(server):
+    lines = [
+        {"from": [0, 0, 0], "to": [100, 0, 0]},
+        {"from": [100, 0, 0], "to": [100, 100, 0], "direction": "vertical"},
+        {"from": [0, 0, 0], "to": [50, 50, 0]},
+    ]
+    wish = {"dimensions": lines, "scale": 2, "title": ""}
+    texts = ["10 cm", "10 cm", "70.71 mm"]
+    svg = figure(server, format="svg", **wish).body
+    paths, words = group_of(svg, "dimensions")
+    assert words == texts
+    root = xml.fromstring(svg)
+    group = next(each for each in root.iter(SVG + "g") if each.get("id") == "dimensions")
+    turns = [
+        float(re.match(r"rotate\(([-\d.e]+)", each.get("transform", "rotate(0")).group(1))
+        for each in group.iter(SVG + "text")
+    ]
+    assert turns == [0, -90, -45], turns
+    pdf = figure(server, format="pdf", **wish).body
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "sheet.pdf")
+        with open(path, "wb") as out:
+            out.write(pdf)
+        told = subprocess.run(["pdftotext", path, "-"], capture_output=True, check=True, text=True)
+        subprocess.run(
+            ["pdftoppm", "-r", "100", "-png", "-singlefile", path, path[:-4]], check=True
+        )
+        with open(path[:-4] + ".png", "rb") as page:
+            of_pdf = numpy.array(pixels(page.read()))
+    # pdftotext splits text at 45° into letters
+    assert told.stdout.count("10 cm") >= 2, told.stdout
+    # in pixels, the line is where it is in the SVG file
+    rows = tiff.read(figure(server, format="tiff", **wish).body)[0]
+    begin, end = paths[2] / 25.4 * 100
+    for picture in (rows, of_pdf):
+        for share in (0.2, 0.35, 0.8):
+            x, y = numpy.floor(begin + (end - begin) * share).astype(int)
+            around = picture[y - 2 : y + 3, x].astype(int)
+            assert around.min() < 140, (share, around)
+    # in DXF files, the lines are in millimeters on the object
+    drawing = figure(server, format="dxf", **wish).body.decode()
+    document = ezdxf.read(io.StringIO(drawing))
+    assert not document.audit().errors
+    found = [each for each in document.modelspace() if each.dxf.layer == "Dimensions"]
+    assert [each.dxf.text for each in found if each.dxftype() == "TEXT"] == texts
+    assert [each.dxf.rotation for each in found if each.dxftype() == "TEXT"] == [0, 90, 45]
+    lengths = []
+    for each in found:
+        if each.dxftype() == "LWPOLYLINE":
+            (x0, y0), (x1, y1) = each.get_points("xy")
+            lengths.append(round(math.hypot(x1 - x0, y1 - y0), 1))
+    assert lengths.count(100.0) == 2 and lengths.count(70.7) == 1, lengths
+    # views have their own dimensions
+    views = [{"direction": "top", "dimensions": lines[:1]}, {"direction": "front"}]
+    svg = figure(server, format="svg", direction=None, views=views).body
+    assert group_of(svg, "dimensions")[1] == ["10 cm"]
+
+
+def test_refusals_of_dimensions(server):
+    line = {"from": [0, 0, 0], "to": [1, 0, 0]}
+    for wish, field in (
+        ({"dimensions": [line, {**line, "to": [0, 0, 0]}]}, "dimensions[1].to"),
+        ({"dimensions": [{"from": [0, 0, 0]}]}, "dimensions[0].to"),
+        ({"dimensions": [{**line, "to": [0, 0]}]}, "dimensions[0].to"),
+        ({"dimensions": [{**line, "from": [0, 0, -1e300]}]}, "dimensions[0].from[2]"),
+        ({"dimensions": [{**line, "direction": "up"}]}, "dimensions[0].direction"),
+        ({"dimensions": [line] * 101}, "dimensions"),
+        ({"dimensions": [line], "rollout": {}, "direction": None, "light": None}, "dimensions"),
+        ({"dimensions": [line], "views": [{}, {}], "direction": None}, "dimensions"),
+        (
+            {"views": [{}, {"dimensions": [{**line, "to": [0, 0, 0]}]}], "direction": None},
+            "views[1].dimensions[0].to",
+        ),
+    ):
+        problem = figure(server, 422, **wish).json()
+        assert problem["detail"] and problem.get("field") == field, (wish, problem)
+    far = {"from": [-1e9, 0, 0], "to": [1e9, 5, 0]}
+    assert b"dimensions" in figure(server, format="svg", scale=1, dimensions=[far]).body
 
 
 def test_refusals_of_views(server, ball):

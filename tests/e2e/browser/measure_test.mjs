@@ -314,6 +314,31 @@ test("the next click begins anew; what is measured stays when the camera moves",
   await page.keyboard.press("5");
 });
 
+test("a figure contains the measured distance as a dimension, unless it is turned off", async () => {
+  const figure = page.locator("strata-figure-dialog");
+  const asked = () =>
+    page.waitForRequest(
+      (request) =>
+        request.method() === "POST" && new URL(request.url()).pathname.endsWith("/figures"),
+    );
+  await page.locator("strata-stage .surface").focus();
+  const [opened] = await Promise.all([asked(), page.keyboard.press("f")]);
+  const { dimensions } = opened.postDataJSON();
+  assert.equal(dimensions.length, 1);
+  const [{ from, to }] = dimensions;
+  const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  assert.ok(Math.abs(length - 100) < near, `${length} mm`);
+  const box = figure.locator('[name="dimensions"]');
+  assert.ok(await box.isChecked());
+  await figure.locator('figure[data-state="drawn"]').waitFor();
+  await shot("figure");
+  const [without] = await Promise.all([asked(), box.uncheck()]);
+  assert.equal(without.postDataJSON().dimensions, undefined);
+  await box.check();
+  await figure.getByRole("button", { name: words.close, exact: true }).first().click();
+  await figure.waitFor({ state: "detached" });
+});
+
 test("arrow keys go along the curve: in its middle is the ridge, marked on the model", async () => {
   readout = desk.panel.locator("strata-profile-plot output");
   const in_mm = (number, unit) => Number(number) * { µm: 0.001, mm: 1, cm: 10 }[unit];

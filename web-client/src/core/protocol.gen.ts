@@ -3928,6 +3928,19 @@ export interface FigureRollout {
   relief?: boolean;
 }
 
+/** What a dimension measures. `aligned`: the distance of the points on the drawing plane. `horizontal`, `vertical`: its part to the right or up on the paper. */
+export type FigureDimensionDirection = "aligned" | "horizontal" | "vertical";
+
+/** Dimension in a figure. A dimension line with extension lines and the length between two points. The length is the distance on the drawing plane and not the distance in space, which is longer if one point is nearer than the other. The line is next to the points, where it does not overlap others if possible. Dimensions shorter than 0.5 mm on paper are left out. */
+export interface FigureDimension {
+  /** In world coordinates. */
+  from: Point3;
+  /** In world coordinates. */
+  to: Point3;
+  /** Default: aligned. */
+  direction?: FigureDimensionDirection;
+}
+
 /** Names of the fields of a title block. */
 export interface FigureTitleBlockLabels {
   /** Default: "Organization". */
@@ -3994,6 +4007,8 @@ export interface FigureView {
   scale?: number;
   /** Text below the view. Default: the name of the saved view, if any. */
   title?: string;
+  /** As in `FigureRequest`. */
+  dimensions?: FigureDimension[];
 }
 
 /** Figure to scale. A drawing to scale without perspective, on a sheet with a scale bar, legend and caption. A saved view, or the camera, layers, surface images and light, set its content. They also set the direction if no other member sets it. Without these members, the figure shows the default layers of the model from the top. */
@@ -4009,7 +4024,7 @@ export interface FigureRequest {
   /** Default: the light mode museum. */
   light?: Light;
   at?: At;
-  /** Unrolls the surface of a cylinder or cone instead of drawing the model from a direction. Not together with `camera`, `light`, `direction`, `normal`, `center` or `labels`. Of a saved view, the figure uses only the layers and surface images. */
+  /** Unrolls the surface of a cylinder or cone instead of drawing the model from a direction. Not together with `camera`, `light`, `direction`, `normal`, `center`, `labels` or `dimensions`. Of a saved view, the figure uses only the layers and surface images. */
   rollout?: FigureRollout;
   /** A standard direction instead of the direction of the camera or view. */
   direction?: FigureDirection;
@@ -4045,8 +4060,10 @@ export interface FigureRequest {
   /** Text in the legend after the title of a list that continues in another column. Default: "(continued)". */
   continued?: string;
   labels?: FigureLabels;
-  /** Several views in a grid on one sheet, with one legend of all of them. Their order is from left to right and from top to bottom. `scale` of the figure is the common scale of the views. By default, it is the largest round scale at which all views fit. Not together with `direction`, `normal`, `center` or `rollout` of the figure, and not in DXF files. */
+  /** Several views in a grid on one sheet, with one legend of all of them. Their order is from left to right and from top to bottom. `scale` of the figure is the common scale of the views. By default, it is the largest round scale at which all views fit. Not together with `direction`, `normal`, `center`, `rollout` or `dimensions` of the figure, and not in DXF files. */
   views?: FigureView[];
+  /** Not together with `rollout`. In DXF files, dimensions are lines and texts on the layer `Dimensions`. */
+  dimensions?: FigureDimension[];
 }
 
 /** File format of a report. `docx` can be edited in word processors. `pdf` is a PDF/A-2b file for archives. */

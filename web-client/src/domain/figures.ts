@@ -3,6 +3,7 @@
 
 import { readNumber, typedNumber } from "../core/locale";
 import type {
+  FigureDimension,
   FigureDirection,
   FigureFormat,
   FigureLabels,
@@ -13,6 +14,7 @@ import type {
 } from "../core/protocol.gen";
 import { keptBlockTexts, titleBlock, type BlockTexts, type KeptBlockTexts } from "./figure-block";
 import { kFewestViews, kViewsChoices, type ViewsChoice } from "./figure-views";
+import type { Vec3 } from "../math/vector";
 import type { ViewContent } from "./views";
 
 export const kDirections: readonly FigureDirection[] = [
@@ -61,6 +63,7 @@ export interface FigureChoices {
   areas: Areas;
   tolerance_mm: number;
   legend: boolean;
+  dimensions: boolean;
   title_block: boolean;
   block_texts: KeptBlockTexts;
 }
@@ -92,6 +95,7 @@ export const usualFigure = (): FigureChoices => ({
   areas: "pixels",
   tolerance_mm: 0.1,
   legend: true,
+  dimensions: true,
   title_block: false,
   block_texts: keptBlockTexts(null),
 });
@@ -123,6 +127,7 @@ export function figureChoices(kept: unknown): FigureChoices {
     areas: oneOf(known["areas"], kAreas, usual.areas),
     tolerance_mm: oneOf(known["tolerance_mm"], kTolerances, usual.tolerance_mm),
     legend: oneOf(known["legend"], [true, false], usual.legend),
+    dimensions: oneOf(known["dimensions"], [true, false], usual.dimensions),
     title_block: oneOf(known["title_block"], [true, false], usual.title_block),
     block_texts: keptBlockTexts(known["block_texts"]),
   };
@@ -136,6 +141,9 @@ export const hasViews = (choices: FigureChoices): boolean =>
 /** Returns whether the figure is a single rollout. */
 export const isRollout = (choices: FigureChoices): boolean =>
   choices.from === "rollout" && !hasViews(choices);
+/** Returns whether the figure can have dimensions. Several views have different planes. */
+export const hasDimensions = (choices: FigureChoices): boolean =>
+  !isRollout(choices) && !hasViews(choices);
 /** Returns whether the user can choose between pixels and outlines. */
 export const hasAreas = (choices: FigureChoices): boolean =>
   !isRollout(choices) && (choices.format === "pdf" || choices.format === "svg");
@@ -150,6 +158,18 @@ export interface FigureParts {
   rollout?: FigureRollout | null;
   block?: BlockTexts | null; // null for no title block
   views?: readonly FigureView[] | null; // null for a single view
+  /** The points of a measurement. The distances between them become dimensions. */
+  measured?: readonly Vec3[];
+}
+
+/** Returns the distances between successive points, without those of length 0. */
+function dimensionsOf(points: readonly Vec3[]): FigureDimension[] {
+  return points.slice(1).flatMap((to, index) => {
+    const from = points[index]!;
+    return from.every((value, axis) => value === to[axis])
+      ? []
+      : [{ from: [...from] as Point3, to: [...to] as Point3 }];
+  });
 }
 
 /** Builds the request. Returns null without the required face, rollout or views. */
@@ -185,7 +205,7 @@ export function figureRequest(
 function contentOf(
   shown: FigureShown,
   chosen: FigureChoices,
-  { face, labels, rollout = null, views }: FigureParts,
+  { face, labels, rollout = null, views, measured = [] }: FigureParts,
 ): FigureRequest | null {
   const { from } = chosen;
   const named = labels ? { labels } : {};
@@ -198,7 +218,13 @@ function contentOf(
   }
   if (from === "face" && !face) return null;
   const direction = from === "face" ? face! : from === "camera" ? {} : { direction: from };
-  return { ...shown, ...direction, ...named };
+  const dimensions = chosen.dimensions ? dimensionsOf(measured) : [];
+  return {
+    ...shown,
+    ...direction,
+    ...named,
+    ...(dimensions.length > 0 ? { dimensions } : {}),
+  };
 }
 
 /**

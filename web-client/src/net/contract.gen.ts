@@ -2969,6 +2969,13 @@ export interface components {
         Empty: wire.Empty;
         /** Extent of records on a model */
         Extent: wire.Extent;
+        /** Dimension in a figure */
+        FigureDimension: wire.FigureDimension;
+        /**
+         * What a dimension measures
+         * @enum {string}
+         */
+        FigureDimensionDirection: wire.FigureDimensionDirection;
         /**
          * Direction of a figure, relative to the model's up
          * @enum {string}
@@ -2989,6 +2996,8 @@ export interface components {
         FigureTitleBlock: wire.FigureTitleBlock;
         /** Names of the fields of a title block */
         FigureTitleBlockLabels: wire.FigureTitleBlockLabels;
+        /** View on a sheet */
+        FigureView: wire.FigureView;
         /** Request for a rendered image */
         FrameRequest: wire.FrameRequest;
         /** Group of users */

@@ -1768,6 +1768,9 @@ export const texts = {
     column: "Text der Beschriftung",
     no_columns:
       "Die Tabelle dieser Ebene hat keine Spalte für die Beschriftung. Fügen Sie eine hinzu, oder wählen Sie eine andere Ebene.",
+    dimensions: "Gemessene Abstände als Maße",
+    dimensions_hint:
+      "Die Abbildung nennt die Abstände in der Zeichenebene. Sie können kürzer sein als die im Raum.",
     preview: (paper: string, from: string, scale: string) =>
       `Vorschau des Blatts: ${paper}, Blickrichtung: ${from}, Maßstab: ${scale}`,
     preview_hint:

@@ -1724,6 +1724,9 @@ export const texts = {
     no_labels: "None",
     column: "Label text",
     no_columns: "This layer's table has no column for labels. Add one, or choose another layer.",
+    dimensions: "Measured distances as dimensions",
+    dimensions_hint:
+      "The figure states the distances on the drawing plane, which can be shorter than those in space.",
     preview: (paper: string, from: string, scale: string) =>
       `Preview of the sheet: ${paper}, seen from: ${from}, scale: ${scale}`,
     preview_hint:

@@ -1759,6 +1759,9 @@ export const texts = {
     column: "Texto de las etiquetas",
     no_columns:
       "La tabla de esta capa no tiene ninguna columna para etiquetas. Añada una o elija otra capa.",
+    dimensions: "Distancias medidas como cotas",
+    dimensions_hint:
+      "La figura indica las distancias en el plano del dibujo, que pueden ser menores que las del espacio.",
     preview: (paper: string, from: string, scale: string) =>
       `Vista previa de la hoja: ${paper}, punto de vista: ${from}, escala: ${scale}`,
     preview_hint:

@@ -1151,6 +1151,24 @@ void read(const nlohmann::json& json, FigureDirection& value) {
 
 nlohmann::json to_json(const FigureDirection& value) { return name(value); }
 
+std::string_view name(FigureDimensionDirection value) {
+  switch (value) {
+    case FigureDimensionDirection::aligned: return "aligned";
+    case FigureDimensionDirection::horizontal: return "horizontal";
+    case FigureDimensionDirection::vertical: return "vertical";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, FigureDimensionDirection& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "aligned") value = FigureDimensionDirection::aligned;
+  if (text == "horizontal") value = FigureDimensionDirection::horizontal;
+  if (text == "vertical") value = FigureDimensionDirection::vertical;
+}
+
+nlohmann::json to_json(const FigureDimensionDirection& value) { return name(value); }
+
 std::string_view name(FigureRequestPaper value) {
   switch (value) {
     case FigureRequestPaper::a5: return "a5";
@@ -4866,6 +4884,20 @@ nlohmann::json to_json(const FigureRollout& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, FigureDimension& value) {
+  read_member(json, "from", value.from);
+  read_member(json, "to", value.to);
+  read_optional_member(json, "direction", value.direction);
+}
+
+nlohmann::json to_json(const FigureDimension& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "from", value.from);
+  write_member(json, "to", value.to);
+  write_optional_member(json, "direction", value.direction);
+  return json;
+}
+
 void read(const nlohmann::json& json, FigureTitleBlockLabels& value) {
   read_optional_member(json, "organization", value.organization);
   read_optional_member(json, "project", value.project);
@@ -4933,6 +4965,7 @@ void read(const nlohmann::json& json, FigureView& value) {
   read_optional_member(json, "rollout", value.rollout);
   read_optional_member(json, "scale", value.scale);
   read_optional_member(json, "title", value.title);
+  read_optional_member(json, "dimensions", value.dimensions);
 }
 
 nlohmann::json to_json(const FigureView& value) {
@@ -4945,6 +4978,7 @@ nlohmann::json to_json(const FigureView& value) {
   write_optional_member(json, "rollout", value.rollout);
   write_optional_member(json, "scale", value.scale);
   write_optional_member(json, "title", value.title);
+  write_optional_member(json, "dimensions", value.dimensions);
   return json;
 }
 
@@ -4980,6 +5014,7 @@ void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "continued", value.continued);
   read_optional_member(json, "labels", value.labels);
   read_optional_member(json, "views", value.views);
+  read_optional_member(json, "dimensions", value.dimensions);
 }
 
 nlohmann::json to_json(const FigureRequest& value) {
@@ -5010,6 +5045,7 @@ nlohmann::json to_json(const FigureRequest& value) {
   write_member(json, "continued", value.continued);
   write_optional_member(json, "labels", value.labels);
   write_optional_member(json, "views", value.views);
+  write_optional_member(json, "dimensions", value.dimensions);
   return json;
 }
 

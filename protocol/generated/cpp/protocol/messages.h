@@ -397,6 +397,8 @@ enum class Schema {
   RolloutRequest,
   RolloutSheet,
   FigureRollout,
+  FigureDimensionDirection,
+  FigureDimension,
   FigureTitleBlockLabels,
   FigureTitleBlock,
   FigureView,
@@ -436,7 +438,7 @@ enum class Schema {
   UnrolledLine,
   Unrolled,
 };
-constexpr int kSchemaCount = 410;
+constexpr int kSchemaCount = 412;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -3857,6 +3859,24 @@ nlohmann::json to_json(const FigureRollout& value);
 template <>
 inline constexpr Schema kSchemaOf<FigureRollout> = Schema::FigureRollout;
 
+// What a dimension measures. `aligned`: the distance of the points on the drawing plane. `horizontal`, `vertical`: its part to the right or up on the paper.
+enum class FigureDimensionDirection { aligned, horizontal, vertical };
+std::string_view name(FigureDimensionDirection value);
+void read(const nlohmann::json& json, FigureDimensionDirection& value);
+nlohmann::json to_json(const FigureDimensionDirection& value);
+
+// Dimension in a figure. A dimension line with extension lines and the length between two points. The length is the distance on the drawing plane and not the distance in space, which is longer if one point is nearer than the other. The line is next to the points, where it does not overlap others if possible. Dimensions shorter than 0.5 mm on paper are left out.
+struct FigureDimension {
+  glm::dvec3 from{0};  // In world coordinates.
+  glm::dvec3 to{0};  // In world coordinates.
+  std::optional<FigureDimensionDirection> direction;  // Default: aligned.
+  bool operator==(const FigureDimension&) const = default;
+};
+void read(const nlohmann::json& json, FigureDimension& value);
+nlohmann::json to_json(const FigureDimension& value);
+template <>
+inline constexpr Schema kSchemaOf<FigureDimension> = Schema::FigureDimension;
+
 // Names of the fields of a title block.
 struct FigureTitleBlockLabels {
   std::string organization = "Organization";
@@ -3911,6 +3931,7 @@ struct FigureView {
   std::optional<double> scale;
   // Text below the view. Default: the name of the saved view, if any.
   std::optional<std::string> title;
+  std::optional<std::vector<FigureDimension>> dimensions;  // As in `FigureRequest`.
   bool operator==(const FigureView&) const = default;
 };
 void read(const nlohmann::json& json, FigureView& value);
@@ -3947,8 +3968,8 @@ struct FigureRequest {
   std::optional<strata::Light> light;  // Default: the light mode museum.
   std::optional<At> at;
   // Unrolls the surface of a cylinder or cone instead of drawing the model from a direction. Not
-  // together with `camera`, `light`, `direction`, `normal`, `center` or `labels`. Of a saved view,
-  // the figure uses only the layers and surface images.
+  // together with `camera`, `light`, `direction`, `normal`, `center`, `labels` or `dimensions`. Of
+  // a saved view, the figure uses only the layers and surface images.
   std::optional<FigureRollout> rollout;
   // A standard direction instead of the direction of the camera or view.
   std::optional<FigureDirection> direction;
@@ -3994,8 +4015,11 @@ struct FigureRequest {
   // Several views in a grid on one sheet, with one legend of all of them. Their order is from left
   // to right and from top to bottom. `scale` of the figure is the common scale of the views. By
   // default, it is the largest round scale at which all views fit. Not together with `direction`,
-  // `normal`, `center` or `rollout` of the figure, and not in DXF files.
+  // `normal`, `center`, `rollout` or `dimensions` of the figure, and not in DXF files.
   std::optional<std::vector<FigureView>> views;
+  // Not together with `rollout`. In DXF files, dimensions are lines and texts on the layer
+  // `Dimensions`.
+  std::optional<std::vector<FigureDimension>> dimensions;
   bool operator==(const FigureRequest&) const = default;
 };
 void read(const nlohmann::json& json, FigureRequest& value);

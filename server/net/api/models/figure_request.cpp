@@ -34,7 +34,9 @@ static_assert(
         static_cast<int>(figure::Direction::right) &&
     static_cast<int>(protocol::FigureRequestPaper::a3) == static_cast<int>(figure::Paper::a3) &&
     static_cast<int>(protocol::FigureFormat::pdf) == static_cast<int>(figure::Format::pdf) &&
-    static_cast<int>(protocol::FigureFormat::dxf) == static_cast<int>(figure::Format::dxf));
+    static_cast<int>(protocol::FigureFormat::dxf) == static_cast<int>(figure::Format::dxf) &&
+    static_cast<int>(protocol::FigureDimensionDirection::vertical) ==
+        static_cast<int>(figure::DimensionDirection::vertical));
 
 // Copies the shown layers and images to `figure`, and the name of a saved view to `view_name`.
 // Returns the camera, if there is one.
@@ -105,7 +107,8 @@ Result<void> read_unrolled(const protocol::FigureRequest& body, FigureRequest& f
   const auto refused = [](const char* field) {
     return fail(
         ErrorCode::invalid, "Setting without effect",
-        "A rollout has no camera, light, direction, normal, center and labels. Leave out `" +
+        "A rollout has no camera, light, direction, normal, center, labels and dimensions. Leave "
+        "out `" +
             std::string(field) + "`, or leave out `rollout`.",
         field);
   };
@@ -115,6 +118,7 @@ Result<void> read_unrolled(const protocol::FigureRequest& body, FigureRequest& f
   if (body.normal) return refused("normal");
   if (body.center) return refused("center");
   if (body.labels) return refused("labels");
+  if (body.dimensions) return refused("dimensions");
   const auto sheet = read_sheet(*body.rollout);
   if (!sheet) return at_field(sheet.error(), "rollout." + sheet.error().field);
   figure.rollout.emplace(FigureRequest::Rollout{sheet->fit, sheet->cut, body.rollout->relief});
@@ -149,6 +153,21 @@ Result<void> read_areas(const protocol::FigureRequest& body, FigureRequest& figu
                 "outlines.",
                 "areas");
   figure.outline_tolerance_mm = body.tolerance_mm.value_or(kTolerance_mm);
+  return {};
+}
+
+Result<void> read_dimensions(const std::vector<protocol::FigureDimension>& body,
+                             FigureRequest& figure) {
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const protocol::FigureDimension& each = body[i];
+    if (each.from == each.to)
+      return fail(ErrorCode::invalid, "Dimension without length",
+                  "The two points of a dimension must be different.",
+                  "dimensions[" + std::to_string(i) + "].to");
+    const auto direction = each.direction.value_or(protocol::FigureDimensionDirection::aligned);
+    figure.dimensions.push_back(
+        {each.from, each.to, static_cast<figure::DimensionDirection>(direction)});
+  }
   return {};
 }
 
@@ -213,6 +232,7 @@ Result<void> check_sheet_of_views(const protocol::FigureRequest& body) {
   if (body.normal) return refused("normal");
   if (body.center) return refused("center");
   if (body.rollout) return refused("rollout");
+  if (body.dimensions) return refused("dimensions");
   if (body.format == protocol::FigureFormat::dxf)
     return fail(
         ErrorCode::invalid, "DXF of several views",
@@ -240,6 +260,7 @@ protocol::FigureRequest body_of_view(const protocol::FigureRequest& body,
   alone.center = view.center;
   alone.scale = view.scale;
   alone.rollout = view.rollout;
+  alone.dimensions = view.dimensions;
   if (!view.rollout) return alone;
   if (!view.camera) alone.camera.reset();  // of the figure
   alone.light.reset();
@@ -318,6 +339,7 @@ Result<FigureRequest> figure_request(const RouteContext& context, const Request&
   figure.shown.shown.background = {kPaper, kPaper};
   STRATA_TRY(validate(figure.shown.shown.light));
   if (body.labels) STRATA_TRY(read_labels(context, *body.labels, figure));
+  if (body.dimensions) STRATA_TRY(read_dimensions(*body.dimensions, figure));
   figure.scale = body.scale;
   figure.paper = static_cast<figure::Paper>(body.paper);
   if (body.orientation)

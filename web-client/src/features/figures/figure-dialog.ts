@@ -8,6 +8,7 @@ import {
   figureChoices,
   figureRequest,
   hasAreas,
+  hasDimensions,
   hasOutlines,
   hasSheet,
   hasViews,
@@ -83,7 +84,17 @@ export class StrataFigureDialog extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "jobs", "layers", "tables", "views", "view", "appearance", "tools");
+    followSession(
+      this,
+      "jobs",
+      "layers",
+      "tables",
+      "views",
+      "view",
+      "appearance",
+      "tools",
+      "measuring",
+    );
   }
 
   static override styles = [
@@ -136,7 +147,8 @@ export class StrataFigureDialog extends LitElement {
     const rollout = model && rolloutOf(this._rollout, model);
     const labels = labelsOf(session);
     const block = this._choices.title_block ? this.block : null;
-    const parts = { face, labels, rollout, block, views: this.views };
+    const measured = session.measuring.positions;
+    const parts = { face, labels, rollout, block, views: this.views, measured };
     const request = figureRequest(shown, this._choices, written, parts);
     return (
       request && {
@@ -166,7 +178,7 @@ export class StrataFigureDialog extends LitElement {
       <div class="editor">
         <form id="figure" class="fields" novalidate @submit=${this.onSubmit}>
           ${hasSheet(this._choices) ? this.viewsField() : nothing} ${hasViews(this._choices) ? nothing : this.direction()} ${this.scale()} ${this.sheet()} ${hasSheet(this._choices) ? this.resolution() : nothing} ${this.format()} ${this.areas()}
-          ${hasSheet(this._choices) ? html`${this.written()} ${this.titleBlock()} ${this.legend()}` : nothing} ${this.labels()}
+          ${hasSheet(this._choices) ? html`${this.written()} ${this.titleBlock()} ${this.legend()}` : nothing} ${this.labels()} ${this.dimensions()}
         </form>
         <div class="sheet">
           ${this.warning()}
@@ -403,6 +415,17 @@ export class StrataFigureDialog extends LitElement {
       problem: this.problemOf("labels"),
       choose: (labels) => this.label(labels),
     });
+  }
+
+  private dimensions(): TemplateResult | typeof nothing {
+    if (!hasDimensions(this._choices) || this.session.measuring.places.length < 2) return nothing;
+    return html`<div class="full group">
+      <label class="check">
+        <input type="checkbox" name="dimensions" aria-describedby="dimensions_hint" .checked=${this._choices.dimensions} @change=${(event: Event) => this.choose({ dimensions: (event.target as HTMLInputElement).checked })} />
+        ${words.dimensions}
+      </label>
+      <p class="hint" id="dimensions_hint">${words.dimensions_hint}</p>
+    </div>`;
   }
 
   private warning(): TemplateResult | typeof nothing {

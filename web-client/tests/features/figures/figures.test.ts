@@ -123,6 +123,7 @@ describe("choices that a browser kept", () => {
     areas: fc.constantFrom(...kAreas),
     tolerance_mm: fc.constantFrom(...kTolerances),
     legend: fc.boolean(),
+    dimensions: fc.boolean(),
     title_block: fc.boolean(),
     block_texts: fc.record({
       organization: fc.string({ maxLength: 200 }),
@@ -154,6 +155,7 @@ describe("choices that a browser kept", () => {
       areas: "lines",
       tolerance_mm: 0.07,
       legend: 1,
+      dimensions: 3,
       title_block: "yes",
       block_texts: { organization: 5, author: "x".repeat(201) },
       more: true,
@@ -199,6 +201,7 @@ describe("what is asked for", () => {
       areas: "outlines",
       tolerance_mm: 0.2,
       legend: false,
+      dimensions: false,
       title_block: false,
       block_texts: { organization: "Museum", author: "" },
     };
@@ -322,6 +325,32 @@ describe("what is asked for", () => {
     expect(asked({ views: "sides", format: "dxf", from: "front" })).not.toHaveProperty("views");
     expect(asked({ views: "sides", areas: "outlines" })).toMatchObject({ areas: "outlines" });
     expect(asked({ views: "one" })).not.toHaveProperty("views");
+  });
+
+  it("has the measured distances as dimensions of a single drawing", () => {
+    const measured: [number, number, number][] = [
+      [0, 0, 0],
+      [1, 0, 0],
+      [1, 0, 0],
+      [1, 2, 0],
+    ];
+    const asked = (chosen: Partial<FigureChoices>) =>
+      figureRequest(shown, { ...usualFigure(), ...chosen }, unwritten, {
+        measured,
+        rollout: { relief: true },
+        views: [{}, {}],
+      })!;
+    const dimensions = [
+      { from: [0, 0, 0], to: [1, 0, 0] },
+      { from: [1, 0, 0], to: [1, 2, 0] },
+    ];
+    expect(asked({}).dimensions).toEqual(dimensions);
+    expect(asked({ format: "dxf" }).dimensions).toEqual(dimensions);
+    expect(previewRequest(asked({})).dimensions).toEqual(dimensions);
+    for (const without of [{ dimensions: false }, { from: "rollout" }, { views: "sides" }] as const)
+      expect(asked(without)).not.toHaveProperty("dimensions");
+    const unmeasured = figureRequest(shown, usualFigure(), unwritten, { measured: [[1, 2, 3]] });
+    expect(unmeasured).not.toHaveProperty("dimensions");
   });
 
   it("has saved views in the order in which they were chosen, at most six", () => {
