@@ -27,7 +27,7 @@ const field = (who, name) => dialog(who).locator(`[name="${name}"]`);
 const radio = (who, name) =>
   dialog(who).getByRole("radio", {
     name,
-    exact: name !== "TIFF" && name !== "PDF" && name !== "PNG" && name !== "SVG",
+    exact: !["TIFF", "PDF", "PNG", "SVG", "DXF"].includes(name),
   });
 const notice = ({ page }, text) => page.locator("strata-notices .notice", { hasText: text });
 const closed = (who) => dialog(who).waitFor({ state: "detached" });
