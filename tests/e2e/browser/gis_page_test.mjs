@@ -51,7 +51,10 @@ test("the collections are shown as a page", async () => {
   ]);
   await shown.getByRole("heading", { name: /Demo pot/ }).waitFor();
   await shown.getByText("/ogc/collections/demo-pot/position").waitFor();
-  await shown.getByRole("link", { name: /^The layer / }).first().click();
+  await shown
+    .getByRole("link", { name: /^The layer / })
+    .first()
+    .click();
   await shown.getByRole("link", { name: "The values as GeoTIFF" }).waitFor();
   await shown.goto(`${server.url}/ogc/collections?f=html`);
   await shown.getByRole("link", { name: "demo-pot", exact: true }).waitFor();
