@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/text/base64.h"
+#include "core/text/markup.h"
 #include "core/text/number_text.h"
 #include "figure/area_pattern.h"
 #include "figure/pattern.h"
@@ -18,18 +19,6 @@ namespace strata::figure {
 namespace {
 
 using Rings = std::vector<std::vector<glm::dvec2>>;
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  return out;
-}
 
 void write(std::ostream& out, const Path& path) {
   out << "<path d=\"";
@@ -57,7 +46,7 @@ void write(std::ostream& out, const Words& words) {
   if (words.halo)
     out << " paint-order=\"stroke\" stroke=\"#fff\" stroke-linejoin=\"round\" stroke-width=\""
         << short_number(words.size_mm * 0.3) << '"';
-  out << '>' << escaped(words.text) << "</text>\n";
+  out << '>' << escaped_markup(words.text) << "</text>\n";
 }
 
 // Thousandths of a millimeter keep the files of large drawings small.
@@ -88,13 +77,14 @@ class GroupWriter {
     if (group.items.empty() && group.areas.empty() && group.marks.empty() && group.parts.empty())
       return;
     const std::size_t clip = group.clip ? clip_of(*group.clip) : 0;
-    out_ << "<g id=\"" << escaped(group.id) << '"';
+    out_ << "<g id=\"" << escaped_markup(group.id) << '"';
     if (!group.name.empty())
-      out_ << " inkscape:groupmode=\"layer\" inkscape:label=\"" << escaped(group.name) << '"';
+      out_ << " inkscape:groupmode=\"layer\" inkscape:label=\"" << escaped_markup(group.name)
+           << '"';
     if (clip != 0) out_ << " clip-path=\"url(#drawing-clip-" << clip << ")\"";
     if (group.opacity < 1) out_ << " opacity=\"" << short_number(group.opacity) << '"';
     out_ << ">\n";
-    if (!group.name.empty()) out_ << "<title>" << escaped(group.name) << "</title>\n";
+    if (!group.name.empty()) out_ << "<title>" << escaped_markup(group.name) << "</title>\n";
     for (const Item& item : group.items)
       std::visit([&](const auto& each) { write(out_, each); }, item);
     for (const Area& area : group.areas) add(area);
@@ -197,9 +187,9 @@ Result<void> write_svg(const Sheet& sheet, const Picture& drawing, const Documen
   out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
          "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\""
       << width << "mm\" height=\"" << height << "mm\" viewBox=\"0 0 " << width << ' ' << height
-      << "\" font-family=\"" << kTypeface << ", sans-serif\">\n<title>" << escaped(document.title)
-      << "</title>\n<desc>" << escaped(document.author) << "</desc>\n<rect width=\"" << width
-      << "\" height=\"" << height << "\" fill=\"#fff\"/>\n";
+      << "\" font-family=\"" << kTypeface << ", sans-serif\">\n<title>"
+      << escaped_markup(document.title) << "</title>\n<desc>" << escaped_markup(document.author)
+      << "</desc>\n<rect width=\"" << width << "\" height=\"" << height << "\" fill=\"#fff\"/>\n";
   out << "<image id=\"drawing\" x=\"" << short_number(sheet.drawing.corner.x) << "\" y=\""
       << short_number(sheet.drawing.corner.y) << "\" width=\"" << short_number(sheet.drawing.size.x)
       << "\" height=\"" << short_number(sheet.drawing.size.y)
