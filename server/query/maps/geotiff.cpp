@@ -10,11 +10,10 @@
 #include "domain/people/question.h"
 #include "media/tiff_memory.h"
 #include "query/maps/geo_tags.h"
+#include "query/rasters/tiff_tags.h"
 
 namespace strata::query {
 namespace {
-
-constexpr int kTile = 256;
 
 // A value type for the file, and the bits of empty cells in it.
 struct Band {
@@ -91,19 +90,10 @@ std::string gdal_metadata(const GeoReference& reference) {
 
 void describe(TIFF* tiff, const PlaneRaster& raster, const Band& band,
               const GeoReference& reference) {
-  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, raster.width);
-  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, raster.height);
-  TIFFSetField(tiff, TIFFTAG_TILEWIDTH, kTile);
-  TIFFSetField(tiff, TIFFTAG_TILELENGTH, kTile);
-  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-  TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
-  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+  set_tiles(tiff, raster.width, raster.height);
   TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
   TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8 * bytes_per_texel(band.type));
-  TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT,
-               is_float(band.type)           ? SAMPLEFORMAT_IEEEFP
-               : lowest_value(band.type) < 0 ? SAMPLEFORMAT_INT
-                                             : SAMPLEFORMAT_UINT);
+  TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, sample_format(band.type));
   TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
   TIFFSetField(tiff, TIFFTAG_SOFTWARE, "Strata");
   TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, reference.name.c_str());
@@ -114,11 +104,11 @@ void describe(TIFF* tiff, const PlaneRaster& raster, const Band& band,
 
 bool write_tiles(TIFF* tiff, const PlaneRaster& raster, const Band& band) {
   const auto bytes = static_cast<std::size_t>(bytes_per_texel(band.type));
-  std::vector<std::uint8_t> tile(kTile * kTile * bytes);
-  for (int top = 0; top < raster.height; top += kTile)
-    for (int left = 0; left < raster.width; left += kTile) {
-      for (int y = 0; y < kTile; ++y)
-        for (int x = 0; x < kTile; ++x) {
+  std::vector<std::uint8_t> tile(kTiffTile * kTiffTile * bytes);
+  for (int top = 0; top < raster.height; top += kTiffTile)
+    for (int left = 0; left < raster.width; left += kTiffTile) {
+      for (int y = 0; y < kTiffTile; ++y)
+        for (int x = 0; x < kTiffTile; ++x) {
           std::uint32_t bits = band.nodata;
           if (top + y < raster.height && left + x < raster.width) {
             const std::size_t cell =
@@ -131,7 +121,7 @@ bool write_tiles(TIFF* tiff, const PlaneRaster& raster, const Band& band) {
                                .value_or(band.nodata);
           }
           // The bits of a value are little-endian, as the machine and the file.
-          std::memcpy(&tile[static_cast<std::size_t>(y * kTile + x) * bytes], &bits, bytes);
+          std::memcpy(&tile[static_cast<std::size_t>(y * kTiffTile + x) * bytes], &bits, bytes);
         }
       if (TIFFWriteTile(tiff, tile.data(), static_cast<std::uint32_t>(left),
                         static_cast<std::uint32_t>(top), 0, 0) < 0)

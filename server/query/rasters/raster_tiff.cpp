@@ -9,34 +9,16 @@
 #include "query/rasters/raster.h"
 #include "query/rasters/raster_rows.h"
 #include "query/rasters/raster_samples.h"
+#include "query/rasters/tiff_tags.h"
 
 namespace strata::query {
 namespace {
-
-constexpr int kTiffTile = 256;
-
-std::uint16_t sample_format(ValueType type) {
-  if (is_float(type)) return SAMPLEFORMAT_IEEEFP;
-  return lowest_value(type) < 0 ? SAMPLEFORMAT_INT : SAMPLEFORMAT_UINT;
-}
-
-void set_tiles(TIFF* tiff, const Layer& layer) {
-  const auto side = static_cast<std::uint32_t>(layer.resolution);
-  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, side);
-  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, side);
-  TIFFSetField(tiff, TIFFTAG_TILEWIDTH, kTiffTile);
-  TIFFSetField(tiff, TIFFTAG_TILELENGTH, kTiffTile);
-  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-  TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
-  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
-  TIFFSetField(tiff, TIFFTAG_ZIPQUALITY, 3);
-}
 
 // Integers have no value for "not painted", because any integer may be painted. Floats use NaN,
 // which is never painted.
 void describe_values(TIFF* tiff, const Layer& layer) {
   const std::uint16_t not_alpha = EXTRASAMPLE_UNSPECIFIED;
-  set_tiles(tiff, layer);
+  set_tiles(tiff, layer.resolution, layer.resolution);
   TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 2);
   TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &not_alpha);
   TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8 * bytes_per_texel(layer.type));
@@ -50,7 +32,7 @@ void describe_values(TIFF* tiff, const Layer& layer) {
 
 // Sets the tags of an internal mask as in GDAL.
 void describe_mask(TIFF* tiff, const Layer& layer) {
-  set_tiles(tiff, layer);
+  set_tiles(tiff, layer.resolution, layer.resolution);
   TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_MASK);
   TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
   TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 1);
