@@ -29,6 +29,11 @@ int epsg_of(const Model& model, int depth) {
   return code;
 }
 
+double texel_area(const Model& model, int resolution) {
+  const double texels = model.atlas.coverage * resolution * resolution;
+  return texels > 0 ? model.area / texels : 0;
+}
+
 Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& files,
                                   const std::optional<query::WorldFile>& own) {
   if (options.world) return query::parse_world_file(*options.world, "world");

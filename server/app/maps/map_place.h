@@ -45,6 +45,10 @@ Result<MapAxis> parse_map_axis(std::string_view text);
 // along z (`depth` is 2), as on a map. Otherwise returns 0.
 int epsg_of(const Model& model, int depth);
 
+// Returns the mean area of a texel of a layer on the surface, in the square of the model's unit,
+// and 0 if the atlas covers nothing.
+double texel_area(const Model& model, int resolution);
+
 // Returns the position of the map from the options, from a world file, or from the tags in the
 // image, in this order. Refuses (invalid) a map without any of these.
 Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& files,

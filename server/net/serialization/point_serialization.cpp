@@ -143,15 +143,22 @@ nlohmann::json to_json(const query::Profile& profile, Unit unit) {
   return {{"length_mm", in_millimetres(profile.length, unit)}, {"samples", std::move(samples)}};
 }
 
-nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vector<Layer>& layers,
-                              const Model& model) {
-  nlohmann::json parameters = nlohmann::json::object(), ranges = nlohmann::json::object();
+nlohmann::json coverage_parameters(const std::vector<Layer>& layers) {
+  nlohmann::json parameters = nlohmann::json::object();
   for (const auto& layer : layers) {
     nlohmann::json parameter{{"type", "Parameter"},
                              {"observedProperty", {{"label", {{"en", layer.name}}}}}};
     if (!layer.description.empty()) parameter["description"] = {{"en", layer.description}};
     if (!layer.unit.empty()) parameter["unit"] = {{"symbol", layer.unit}};
     parameters[layer.slug] = std::move(parameter);
+  }
+  return parameters;
+}
+
+nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vector<Layer>& layers,
+                              const Model& model) {
+  nlohmann::json ranges = nlohmann::json::object();
+  for (const auto& layer : layers) {
     nlohmann::json value;
     for (const auto& entry : point.values)
       if (entry.layer == layer.slug && entry.valid) value = entry.value;
@@ -172,7 +179,7 @@ nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vecto
               {"y", axis(point.position.y)},
               {"z", axis(point.position.z)}}},
             {"referencing", {{{"coordinates", {"x", "y", "z"}}, {"system", system}}}}}},
-          {"parameters", parameters},
+          {"parameters", coverage_parameters(layers)},
           {"ranges", ranges}};
 }
 

@@ -18,6 +18,8 @@ struct SurfacePoint;
 
 namespace strata::net {
 
+// Returns the parameters of CoverageJSON: the meaning of the values of the layers.
+nlohmann::json coverage_parameters(const std::vector<Layer>& layers);
 protocol::SurfacePoint to_protocol(const query::SurfacePoint& point);
 protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional<std::string>& id);
 nlohmann::json to_json(const query::Profile& profile, Unit unit);

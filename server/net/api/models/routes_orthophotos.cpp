@@ -49,18 +49,13 @@ Result<OrthophotoRequest> orthophoto_request(const Request& request) {
   return requested;
 }
 
-double texel_area(const Model& model, int resolution) {
-  const double texels = model.atlas.coverage * resolution * resolution;
-  return texels > 0 ? model.area / texels : 0;
-}
-
 Result<SurfaceImage> bake(room::Room& room, const OrthophotoRequest& requested,
                           const app::MapPicture& map,
                           const store::IdempotentResponse<SurfaceImage>& answer,
                           Progress& progress) {
   progress.report(0, "Finding the visible surface");
   const jobs::OrthophotoSampler sampler(map.picture, map.world,
-                                        texel_area(room.model(), requested.resolution));
+                                        app::texel_area(room.model(), requested.resolution));
   if (progress.cancelled()) return cancelled_problem();
   Layer colors;  // temporary; its numbers are RGBA values
   colors.type = ValueType::u32;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "net/api/ogc/ogc_collections.h"
+#include "net/serialization/point_serialization.h"
 
 namespace strata::net {
 namespace {
@@ -55,7 +55,7 @@ nlohmann::json point_coverages_json(const std::vector<PlacedValues>& places,
   if (places.size() == 1) {
     nlohmann::json coverage = point_coverage_json(places.front(), layers);
     coverage["domain"]["referencing"] = referencing(system);
-    coverage["parameters"] = parameters_of(layers);
+    coverage["parameters"] = coverage_parameters(layers);
     return coverage;
   }
   nlohmann::json coverages = nlohmann::json::array();
@@ -63,7 +63,7 @@ nlohmann::json point_coverages_json(const std::vector<PlacedValues>& places,
     coverages.push_back(point_coverage_json(placed, layers));
   return {{"type", "CoverageCollection"},
           {"domainType", "Point"},
-          {"parameters", parameters_of(layers)},
+          {"parameters", coverage_parameters(layers)},
           {"referencing", referencing(system)},
           {"coverages", std::move(coverages)}};
 }
@@ -95,7 +95,7 @@ nlohmann::json trajectory_coverage_json(const std::vector<PlacedValues>& places,
                 {"coordinates", nlohmann::json::array({"t", "x", "y"})},
                 {"values", std::move(path)}}}}},
             {"referencing", std::move(systems)}}},
-          {"parameters", parameters_of(layers)},
+          {"parameters", coverage_parameters(layers)},
           {"ranges", std::move(ranges)}};
 }
 
@@ -126,7 +126,7 @@ nlohmann::json grid_coverage_json(const glm::dvec2& first, const glm::dvec2& las
             {"domainType", "Grid"},
             {"axes", {{"x", axis(first.x, last.x, width)}, {"y", axis(first.y, last.y, height)}}},
             {"referencing", referencing(system)}}},
-          {"parameters", parameters_of(layers)},
+          {"parameters", coverage_parameters(layers)},
           {"ranges", std::move(ranges)}};
 }
 

@@ -69,8 +69,8 @@ app::GisPlane::Box bounds_of(const Model& model, const app::GisPlane& plane) {
 }
 
 double cell_of(const Model& model, const Layer& layer) {
-  const double texels = model.atlas.coverage * layer.resolution * layer.resolution;
-  return texels > 0 && model.area > 0 ? std::sqrt(model.area / texels) : 1;
+  const double area = app::texel_area(model, layer.resolution);
+  return area > 0 ? std::sqrt(area) : 1;
 }
 
 glm::dvec2 cells_of(const app::GisPlane::Box& window, double cell) {
@@ -82,19 +82,6 @@ glm::dvec2 limited(const glm::dvec2& size, double most_cells) {
   if (cells <= most_cells) return size;
   const glm::dvec2 smaller = glm::max(glm::floor(size * std::sqrt(most_cells / cells)), 1.0);
   return glm::min(smaller, most_cells);
-}
-
-nlohmann::json parameters_of(const std::vector<Layer>& layers) {
-  nlohmann::json parameters = nlohmann::json::object();
-  for (const Layer& layer : layers) {
-    nlohmann::json parameter{{"type", "Parameter"},
-                             {"observedProperty", {{"label", {{"en", layer.name}}}}}};
-    if (!layer.description.empty()) parameter["description"] = {{"en", layer.description}};
-    if (!layer.unit.empty())
-      parameter["unit"] = {{"label", {{"en", layer.unit}}}, {"symbol", layer.unit}};
-    parameters[layer.slug] = std::move(parameter);
-  }
-  return parameters;
 }
 
 nlohmann::json model_collection(const OgcPlace& place, const Model& model,

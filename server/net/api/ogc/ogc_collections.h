@@ -45,7 +45,4 @@ inline constexpr double kMostFileCells = 16e6, kMostJsonCells = 1e6;
 // Returns a size with the same shape and at most this number of cells.
 glm::dvec2 limited(const glm::dvec2& size, double most_cells);
 
-// Returns the parameters of CoverageJSON and EDR: the meaning of the values of the layers.
-nlohmann::json parameters_of(const std::vector<Layer>& layers);
-
 }  // namespace strata::net
