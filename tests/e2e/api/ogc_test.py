@@ -415,7 +415,7 @@ def test_values_along_a_line_and_in_an_area(server):
         (axes[axis]["stop"] - axes[axis]["start"]) / (axes[axis]["num"] - 1) for axis in ("x", "y")
     ]
     inside = sum(value == 1 for value in units["values"])
-    # The triangle lies in the disc around (40, 40) with the radius 30 mm, except near (10, 10).
+    # The disc around (40, 40) with a radius of 30 mm contains the triangle, except near (10, 10).
     expected = 0.04 * 0.04 / 2 - corner_outside()
     assert abs(inside * step[0] * -step[1] / expected - 1) < 0.01, inside
 
