@@ -42,6 +42,7 @@ export default defineConfig({
     proxy: {
       "/api": { target: server, ws: true },
       "/login": { target: server },
+      "/id": { target: server },
       "/ogc": { target: server },
       "/sign-in": { target: server },
     },

@@ -179,10 +179,11 @@ Result<std::string> write_turtle(std::span<const Triple> triples,
     statement->subject = new_term(world.get(), triple.subject);
     statement->predicate = new_term(world.get(), triple.predicate);
     const auto* object = reinterpret_cast<const unsigned char*>(triple.object.data());
+    const Uri datatype = triple.datatype.empty() ? Uri() : new_uri(world.get(), triple.datatype);
     statement->object =
         triple.is_literal
             ? raptor_new_term_from_counted_literal(
-                  world.get(), object, triple.object.size(), nullptr,
+                  world.get(), object, triple.object.size(), datatype.get(),
                   triple.language.empty()
                       ? nullptr
                       : reinterpret_cast<const unsigned char*>(triple.language.c_str()),

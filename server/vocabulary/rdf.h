@@ -17,7 +17,8 @@ struct Triple {
   std::string subject, predicate;
   std::string object;
   bool is_literal = false;
-  std::string language;  // of a literal, in lowercase; may be empty
+  std::string language{};  // of a literal, in lowercase; may be empty
+  std::string datatype{};  // the IRI of a literal's type; empty: a text. Not set by read_rdf.
 };
 
 // The base IRI for texts without a base. Relative IRIs in such a text are read as IRIs that begin

@@ -198,22 +198,22 @@ Result<std::string> terms_skos(const std::string& name, std::span<const Term> te
   std::map<std::string, std::string> iris;  // by code
   for (const Term& term : terms) iris[term.code] = iri_of(term);
   const std::string scheme = std::string(kRelativeBase) + "#";
-  std::vector<Triple> triples{{scheme, kType, kSkos + "ConceptScheme", false, {}},
-                              {scheme, kSkos + "prefLabel", name, true, {}}};
+  std::vector<Triple> triples{{scheme, kType, kSkos + "ConceptScheme", false},
+                              {scheme, kSkos + "prefLabel", name, true}};
   for (const Term& term : terms) {
     const std::string& iri = iris.at(term.code);
     const auto say = [&](const char* property, const std::string& text,
                          const std::string& language) {
       if (!text.empty()) triples.push_back({iri, kSkos + property, text, true, language});
     };
-    triples.push_back({iri, kType, kSkos + "Concept", false, {}});
-    triples.push_back({iri, kSkos + "inScheme", scheme, false, {}});
+    triples.push_back({iri, kType, kSkos + "Concept", false});
+    triples.push_back({iri, kSkos + "inScheme", scheme, false});
     say("notation", term.code, {});
     say("prefLabel", term.label, {});
     for (const auto& [language, label] : term.labels) say("prefLabel", label, language);
     say("definition", term.definition, {});
     if (const auto parent = iris.find(term.parent); parent != iris.end())
-      triples.push_back({iri, kSkos + "broader", parent->second, false, {}});
+      triples.push_back({iri, kSkos + "broader", parent->second, false});
   }
   const RdfPrefix prefixes[] = {{"skos", kSkos}};
   return write_turtle(triples, prefixes);

@@ -192,6 +192,8 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_map_routes(router_, context_);
   add_orthophoto_routes(router_, context_);
   add_photograph_routes(router_, context_);
+  add_linked_routes(router_, context_);
+  add_annotation_routes(router_, context_);
   add_ogc_routes(router_, context_);
   add_ogc_item_routes(router_, context_);
   add_ogc_coverage_routes(router_, context_);

@@ -60,6 +60,8 @@ void add_shape_routes(Router& router, const RouteContext& context);
 void add_map_routes(Router& router, const RouteContext& context);
 void add_photograph_routes(Router& router, const RouteContext& context);
 void add_orthophoto_routes(Router& router, const RouteContext& context);
+void add_linked_routes(Router& router, const RouteContext& context);
+void add_annotation_routes(Router& router, const RouteContext& context);
 void add_ogc_routes(Router& router, const RouteContext& context);
 void add_ogc_item_routes(Router& router, const RouteContext& context);
 void add_ogc_coverage_routes(Router& router, const RouteContext& context);

@@ -1,9 +1,9 @@
 #include "net/serialization/feature_json.h"
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "core/text/bytes.h"
+#include "core/text/fixed_number.h"
 #include "domain/people/question.h"
 
 namespace strata::net {
@@ -11,20 +11,10 @@ namespace {
 
 constexpr std::size_t kPieceBytes = 1u << 16;
 
-void append_number(std::string& text, double value, int decimals) {
-  char digits[400];  // the largest double has 309 digits before the decimal point
-  char* end =
-      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals).ptr;
-  while (end[-1] == '0') --end;
-  if (end[-1] == '.') --end;
-  const std::string_view number(digits, static_cast<std::size_t>(end - digits));
-  text += number == "-0" ? "0" : number;
-}
-
 void append_place(std::string& text, const glm::dvec3& place, const CoordinateForm& form) {
   for (int axis = 0; axis < form.dimensions; ++axis) {
     text += axis == 0 ? '[' : ',';
-    append_number(text, place[axis], form.decimals);
+    append_fixed(text, place[axis], form.decimals);
   }
   text += ']';
 }

@@ -163,6 +163,7 @@ def sweep(server, secret, tour, files, thread):
         "photograph": "1",
         "collection": "sheet.finds",
         "feature": "1",
+        "annotation": "areas.1",
         "plane": "xy",
         "table": "finds",
         "key": "1",

@@ -174,6 +174,7 @@ def words(server, public):
         "photograph": ["1"],
         "collection": ["sheet", "sheet.cracks", "sheet.finds", "sheet.finds.name"],
         "feature": ["1"],
+        "annotation": ["areas.1"],
         "plane": ["xy"],
         "file": ["1"],
         "kiosk": ["1"],
@@ -298,10 +299,13 @@ def reading_bodies(camera):
 
 
 def accepted_types(server, path, operation):
-    """Yields JSON, CSV if the contract offers it, and any type for GIS programs."""
+    """Yields JSON, CSV if the contract offers it, any type for GIS programs, and the types of linked
+    data."""
     yield "application/json"
     if path.startswith("/ogc"):
         yield "*/*"
+    if path.startswith("/id"):
+        yield from ("text/turtle", "text/html")
     offered = (
         server.contract._resolve(response).get("content", {})
         for status, response in operation["responses"].items()
@@ -317,7 +321,7 @@ def sweep(server, token, words_of, camera):
     bodies, answered, told = reading_bodies(camera), 0, {}
     for path, operations in server.contract.document["paths"].items():
         # these responses have no end; events_test.py reads them
-        if not path.startswith(("/api/v1", "/ogc")) or path.endswith(("/live", "/events")):
+        if not path.startswith(("/api/v1", "/id", "/ogc")) or path.endswith(("/live", "/events")):
             continue
         for method, operation in operations.items():
             asked = (

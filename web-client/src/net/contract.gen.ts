@@ -1700,6 +1700,25 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/surface.glb": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        /** Get the surface of a model as GLB */
+        get: operations["get_surface"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/timeline": {
         parameters: {
             query?: never;
@@ -3747,6 +3766,16 @@ export interface components {
                 "application/problem+json": components["schemas"]["Problem"];
             };
         };
+        LinkedDocument: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/ld+json": Record<string, never>;
+                "text/html": string;
+                "text/turtle": string;
+            };
+        };
         NoSuchBytes: {
             headers: {
                 [name: string]: unknown;
@@ -3883,6 +3912,7 @@ export interface components {
     };
     parameters: {
         after: string;
+        annotation: string;
         at: string;
         collection: string;
         column: string;
@@ -3899,6 +3929,8 @@ export interface components {
         layer: string;
         limit: number;
         limit_of_all: number;
+        linked_format: "jsonld" | "turtle" | "html";
+        linked_page: number;
         look: string;
         map_crs: string;
         model: string;
@@ -7338,6 +7370,31 @@ export interface operations {
                 };
                 content: {
                     "application/octet-stream": string;
+                };
+            };
+        };
+    };
+    get_surface: {
+        parameters: {
+            query?: {
+                layers?: string;
+                max_triangles?: number;
+                texture_size?: number;
+            };
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "model/gltf-binary": string;
                 };
             };
         };

@@ -50,5 +50,5 @@ export interface SelectionRequest {
  * programs, or the photographs.
  */
 export interface ModelDialogRequest {
-  dialog: "rollout" | "report" | "export" | "gis" | "photographs";
+  dialog: "rollout" | "report" | "export" | "gis" | "linked" | "photographs";
 }

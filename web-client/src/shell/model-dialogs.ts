@@ -10,6 +10,7 @@ import "../features/exports/export-dialog";
 import "../features/figures/figure-dialog";
 import "../features/figures/rollout-dialog";
 import "../features/gis/gis-dialog";
+import "../features/linked/linked-dialog";
 import "../features/account/kiosks-dialog";
 import "../features/layers/layer-dialog";
 import "../features/layers/map-dialog";

@@ -155,6 +155,8 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
       return html`<strata-export-dialog .session=${session} @closed=${closed}></strata-export-dialog>`;
     case "gis":
       return html`<strata-gis-dialog .session=${session} @closed=${closed}></strata-gis-dialog>`;
+    case "linked":
+      return html`<strata-linked-dialog .session=${session} @closed=${closed}></strata-linked-dialog>`;
     case "kiosks":
       return session.model
         ? html`<strata-kiosks-dialog

@@ -1796,6 +1796,11 @@ export const texts = {
     open: "3D-Modell exportieren …",
   },
   gis: { part: "GIS-Programme", title: "GIS-Programm verbinden", open: "GIS-Programm verbinden …" },
+  linked: {
+    part: "Kataloge und Betrachter",
+    title: "Verknüpfte Daten",
+    open: "Verknüpfte Daten …",
+  },
 
   tours: {
     title: "Führungen",

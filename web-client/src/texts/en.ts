@@ -1747,6 +1747,7 @@ export const texts = {
   condition_report: { title: "Condition report", open: "Condition report…" },
   model_export: { part: "3D model", title: "Export 3D model", open: "Export 3D model…" },
   gis: { part: "GIS programs", title: "Connect a GIS program", open: "Connect a GIS program…" },
+  linked: { part: "Catalogs and viewers", title: "Linked data", open: "Linked data…" },
 
   tours: {
     title: "Tours",

@@ -1795,6 +1795,7 @@ export const texts = {
     title: "Conectar un programa SIG",
     open: "Conectar un programa SIG…",
   },
+  linked: { part: "Catálogos y visores", title: "Datos enlazados", open: "Datos enlazados…" },
   tours: {
     title: "Recorridos",
     new: "Nuevo recorrido…",

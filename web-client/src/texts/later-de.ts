@@ -125,6 +125,21 @@ export const laterTexts = {
     save: "GeoTIFF speichern",
     collections: "Zeigen, was GIS-Programme von diesem Modell sehen",
   },
+  linked_dialog: {
+    lead: "Kataloge, Betrachter und Skripte lesen das Modell unter diesen Adressen. Sie bleiben gleich, wenn sich Namen ändern, und können daher zitiert werden.",
+    model: "Modell",
+    model_hint: "Linked Art (CIDOC CRM) als JSON-LD oder Turtle, im Browser als Seite.",
+    manifest: "IIIF-Manifest",
+    manifest_hint:
+      "Die Oberfläche, die gespeicherten Ansichten und die Annotationen, für Betrachter von IIIF Presentation 4.",
+    annotations: "Annotationen",
+    annotations_hint:
+      "Die Kommentare sowie die Flächen, Linien und Punkte aller Ebenen (W3C Web Annotation).",
+    catalog: "Katalog der Site",
+    catalog_hint: "Alle Modelle und Tabellen, die Sie sehen (DCAT).",
+    save: "Beschreibung als Turtle speichern",
+    show: "Beschreibung als Seite zeigen",
+  },
   report_dialog: {
     format: "Dateiformat",
     formats: { docx: "Word-Dokument", pdf: "PDF/A" },

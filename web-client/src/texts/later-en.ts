@@ -122,6 +122,21 @@ export const laterTexts = {
     save: "Save GeoTIFF",
     collections: "Show what GIS programs see of this model",
   },
+  linked_dialog: {
+    lead: "Catalogs, viewers and scripts read the model under these addresses. The addresses stay the same when names change, so they can be cited.",
+    model: "Model",
+    model_hint: "Linked Art (CIDOC CRM) as JSON-LD or Turtle, and as a page in a browser.",
+    manifest: "IIIF manifest",
+    manifest_hint:
+      "The surface, the saved views and the annotations, for viewers of IIIF Presentation 4.",
+    annotations: "Annotations",
+    annotations_hint:
+      "The comments and the areas, lines and points of all layers (W3C Web Annotation).",
+    catalog: "Catalog of the site",
+    catalog_hint: "All models and tables that you see (DCAT).",
+    save: "Save the description as Turtle",
+    show: "Show the description as a page",
+  },
   report_dialog: {
     format: "File format",
     formats: { docx: "Word document", pdf: "PDF/A" },

@@ -126,6 +126,21 @@ export const laterTexts = {
     save: "Guardar GeoTIFF",
     collections: "Mostrar lo que los programas SIG ven de este modelo",
   },
+  linked_dialog: {
+    lead: "Los catálogos, visores y scripts leen el modelo en estas direcciones. No cambian con los nombres, así que se pueden citar.",
+    model: "Modelo",
+    model_hint: "Linked Art (CIDOC CRM) en JSON-LD o Turtle, y como página en un navegador.",
+    manifest: "Manifiesto IIIF",
+    manifest_hint:
+      "La superficie, las vistas guardadas y las anotaciones, para visores de IIIF Presentation 4.",
+    annotations: "Anotaciones",
+    annotations_hint:
+      "Los comentarios y las áreas, líneas y puntos de todas las capas (W3C Web Annotation).",
+    catalog: "Catálogo del sitio",
+    catalog_hint: "Todos los modelos y tablas que usted ve (DCAT).",
+    save: "Guardar la descripción en Turtle",
+    show: "Mostrar la descripción como página",
+  },
   report_dialog: {
     format: "Formato de archivo",
     formats: { docx: "Documento de Word", pdf: "PDF/A" },

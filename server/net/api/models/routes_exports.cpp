@@ -1,5 +1,7 @@
 // 3D models for other programs.
+#include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "app/exports/model_export.h"
 #include "domain/scene/model.h"
@@ -7,6 +9,7 @@
 #include "net/api/layers/region_reader.h"
 #include "net/api/models/made_file.h"
 #include "net/api/routes.h"
+#include "net/http/entity_tags.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/at_field.h"
 #include "net/serialization/view_settings_serialization.h"
@@ -75,6 +78,35 @@ Result<Response> answer_export(const RouteContext& context, const Request& reque
       });
 }
 
+// Reads the parameters of the query for a GLB file of the current state.
+Result<app::ModelExport> read_surface(const RouteContext& context, const Request& request) {
+  app::ModelExport read;
+  read.room = STRATA_TRY(open_room(context, request));
+  STRATA_TRY(check_source_download(request, read.room->model()));
+  read.role = request.role();
+  read.layers =
+      STRATA_TRY(find_layers(*read.room, split_list(request.query_or("layers", {})), "layers"));
+  std::ranges::sort(read.layers, {}, &Layer::order);
+  if (const std::string side = request.query_or("texture_size", {}); !side.empty())
+    read.texture_size = static_cast<int>(std::bit_ceil(
+        static_cast<unsigned>(STRATA_TRY(parse_integer(side, 512, 8192, "texture_size")))));
+  if (const std::string most = request.query_or("max_triangles", {}); !most.empty())
+    read.max_triangles = static_cast<std::size_t>(STRATA_TRY(
+        parse_integer(most, 100, std::numeric_limits<std::uint32_t>::max(), "max_triangles")));
+  return read;
+}
+
+// Unlike an export, it needs no body, so viewers of IIIF manifests can load it.
+Result<Response> get_surface(const RouteContext& context, const Request& request) {
+  auto read = STRATA_TRY(read_surface(context, request));
+  const auto room = read.room;
+  return respond_with_file(context, request, *room, room->edits().durable_state().sequence,
+                           [&context, read = std::move(read)](Progress& progress) {
+                             return app::export_model(context, read, context.options.upload_dir,
+                                                      progress);
+                           });
+}
+
 }  // namespace
 
 void add_export_routes(Router& router, const RouteContext& context) {
@@ -86,6 +118,13 @@ void add_export_routes(Router& router, const RouteContext& context) {
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
               .is_question = true});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/surface.glb",
+              .handler = answering(
+                  [&context](const Request& request) { return get_surface(context, request); }),
+              .query = {"layers", "texture_size", "max_triangles"},
+              .is_question = true,
+              .state = state_of_model(context)});
 }
 
 }  // namespace strata::net

@@ -136,6 +136,7 @@ export const path_words = {
   photograph: mostly("1"),
   collection: mostly("wall", "wall.cracks", "wall.units", "wall.units.code", "wall.nothing"),
   feature: mostly("1", "1-1", "range-1"),
+  annotation: mostly("areas.1", "areas.2"),
   plane: mostly("xy", "xz"),
   view: mostly("west", "1"),
   tour: mostly("round", "1"),
@@ -348,6 +349,7 @@ export const particulars = {
     path: { collection: mostly("wall") },
     query: { coords: one("POLYGON((0.01 0.01, 0.03 0.01, 0.03 0.03, 0.01 0.01))", "POLYGON(1)") },
   },
+  get_layer_annotation: { path: { layer: mostly("units", "cracks") } },
   get_photograph_picture: of_photograph,
   get_undistorted_photograph: of_photograph,
   set_photograph_picture: {
