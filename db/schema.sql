@@ -1535,6 +1535,27 @@ CREATE TABLE public.blob_chunks (
 );
 ALTER TABLE ONLY public.blob_chunks ALTER COLUMN data SET STORAGE EXTERNAL;
 
+CREATE TABLE public.bills (
+    id bigint NOT NULL,
+    project_id bigint NOT NULL,
+    name text NOT NULL,
+    content jsonb NOT NULL,
+    positions integer NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT bills_content_check CHECK ((jsonb_typeof(content) = 'object'::text)),
+    CONSTRAINT bills_name_check CHECK (((char_length(name) >= 1) AND (char_length(name) <= 200))),
+    CONSTRAINT bills_positions_check CHECK ((positions >= 0))
+);
+
+ALTER TABLE public.bills ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.bills_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.blobs (
     sha256 bytea NOT NULL,
     bytes bigint NOT NULL,
@@ -2199,6 +2220,9 @@ ALTER TABLE ONLY public.audit_log
 ALTER TABLE ONLY public.blob_chunks
     ADD CONSTRAINT blob_chunks_pkey PRIMARY KEY (sha256, chunk);
 
+ALTER TABLE ONLY public.bills
+    ADD CONSTRAINT bills_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.blobs
     ADD CONSTRAINT blobs_pkey PRIMARY KEY (sha256);
 
@@ -2417,6 +2441,8 @@ CREATE INDEX audit_log_project ON public.audit_log USING btree (project_id, id) 
 
 CREATE INDEX audit_log_time ON public.audit_log USING btree ("time", id);
 
+CREATE UNIQUE INDEX bills_name ON public.bills USING btree (project_id, lower(name));
+
 CREATE INDEX blobs_removing ON public.blobs USING btree (removing) WHERE (removing IS NOT NULL);
 
 CREATE INDEX blobs_unused ON public.blobs USING btree (unused) WHERE (unused IS NOT NULL);
@@ -2542,6 +2568,8 @@ CREATE TRIGGER attachment_visibility_is_audited AFTER UPDATE OF visibility ON pu
 CREATE TRIGGER audit_is_kept BEFORE DELETE OR UPDATE ON public.audit_log FOR EACH ROW EXECUTE FUNCTION public.audit_is_kept();
 
 CREATE TRIGGER audit_is_not_emptied BEFORE TRUNCATE ON public.audit_log FOR EACH STATEMENT EXECUTE FUNCTION public.audit_is_kept();
+
+CREATE TRIGGER bill_deletion_is_audited AFTER DELETE ON public.bills FOR EACH ROW EXECUTE FUNCTION public.deletion_is_audited('bill');
 
 CREATE TRIGGER column_deletion_is_audited AFTER UPDATE OF hidden ON public.record_columns FOR EACH ROW WHEN ((old.hidden <> new.hidden)) EXECUTE FUNCTION public.column_deletion_is_audited();
 
@@ -2702,6 +2730,9 @@ ALTER TABLE ONLY public.attachments
 
 ALTER TABLE ONLY public.attachments
     ADD CONSTRAINT attachments_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.bills
+    ADD CONSTRAINT bills_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.blob_chunks
     ADD CONSTRAINT blob_chunks_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;

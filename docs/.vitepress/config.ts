@@ -34,6 +34,7 @@ const howTo = {
     "read-the-audit-log",
     "see-the-past",
     "compare-surveys",
+    "bill-quantities",
     "compare-observers",
     "rate-damage",
     "use-the-trash",

@@ -48,8 +48,8 @@ def add_common_answers(document) -> None:
             operation["responses"] = dict(sorted(operation["responses"].items()))
 
 
-# Reads whose responses have no ETag of their content. Some responses are sent only once, or as a
-# stream of events. Other responses must not be stored. In the remaining cases, the ETag is the
+# Reads whose responses have no ETag of their content. Some responses are sent only once, as a
+# stream of events, or contain the time. Other responses must not be stored. In the remaining cases, the ETag is the
 # version of a record for If-Match, but the response contains more than the record.
 WITHOUT_ANSWER_ETAG = (
     "/sign-in/providers",
@@ -59,6 +59,7 @@ WITHOUT_ANSWER_ETAG = (
     "/me/models/{model}/view",
     "/layers/{layer}/records/{key}",
     "/attachments",
+    "/bills/{bill}/file",
 )
 
 
@@ -82,7 +83,7 @@ def add_validators(document) -> None:
                 answers["304"] = {"$ref": "#/components/responses/UnchangedAnswer"}
             is_versioned = {
                 "$ref": "#/components/parameters/if_match"
-            } in parameters and method in ("patch", "delete")
+            } in parameters and method in ("patch", "put", "delete")
             if is_versioned and not path.startswith("/api/v1/tools"):
                 answers["428"] = {"$ref": "#/components/responses/VersionMissing"}
             if not parameters:

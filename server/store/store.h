@@ -31,6 +31,7 @@ class Models;
 class NamedParts;
 class Nodes;
 class Objects;
+class Bills;
 class PersonalViews;
 class Photographs;
 class Projects;
@@ -79,6 +80,7 @@ class Store {
   Projects& projects();
   Models& models();
   Objects& objects();  // objects with surveys
+  Bills& bills();      // of quantities
   SurfaceImages& surface_images();
   Layers& layers();
   Tables& tables();

@@ -7,6 +7,7 @@
 #include "core/no_such.h"
 #include "core/text/slug.h"
 #include "store/content/answers.h"
+#include "store/content/bills.h"
 #include "store/content/comments.h"
 #include "store/content/jobs.h"
 #include "store/content/layers.h"
@@ -139,6 +140,7 @@ struct Store::Impl {
   Projects projects{pool};
   Models models{pool, blobs};
   Objects objects{pool};
+  Bills bills{pool};
   SurfaceImages images{pool, blobs};
   Layers layers{pool};
   Tables tables{pool};

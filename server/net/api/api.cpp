@@ -152,6 +152,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_trash_routes(router_, context_);
   add_model_routes(router_, context_);
   add_object_routes(router_, context_);
+  add_bill_routes(router_, context_);
   add_import_routes(router_, context_);
   add_job_routes(router_, context_);
   add_layer_routes(router_, context_);

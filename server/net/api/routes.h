@@ -21,6 +21,7 @@ void add_audit_routes(Router& router, const RouteContext& context);
 void add_trash_routes(Router& router, const RouteContext& context);
 void add_model_routes(Router& router, const RouteContext& context);
 void add_object_routes(Router& router, const RouteContext& context);
+void add_bill_routes(Router& router, const RouteContext& context);
 void add_import_routes(Router& router, const RouteContext& context);
 void add_job_routes(Router& router, const RouteContext& context);
 void add_layer_routes(Router& router, const RouteContext& context);

@@ -287,6 +287,11 @@ def lists_that_others_write(server, camera):
             delete("/projects/default/objects"),
             by_id,
         ),
+        ("/projects/default/bills", "bills"): (
+            made("/projects/default/bills", lambda n: {"name": f"{names(n)}"}),
+            delete("/projects/default/bills"),
+            by_id,
+        ),
         (T + "/columns", "columns"): (
             lambda n: server.ok("POST", T + "/columns", {"name": names(n)}).json()["column"]["id"],
             delete(T + "/columns"),

@@ -105,6 +105,7 @@ def make_site(server):
     group = server.ok("POST", "/groups", {"name": "Students", "members": []}).json()["id"]
     thing = server.ok("POST", "/projects/default/objects", {"name": "Sheet"}).json()["id"]
     server.ok("PATCH", M, {"object": thing, "survey_date": "2019"})
+    bill = server.ok("POST", "/projects/default/bills", {"name": "Facade"}).json()["id"]
     job = server.ok(
         "POST", M + "/figures", {"format": "png", "dpi": 100}, headers={"Prefer": "respond-async"}
     ).json()["id"]
@@ -117,6 +118,7 @@ def make_site(server):
             "comment": str(comment),
             "group": str(group),
             "object": str(thing),
+            "bill": str(bill),
             "job": str(job),
         }
     )

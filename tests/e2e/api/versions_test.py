@@ -53,6 +53,7 @@ def make_site(server):
         M + "/selections",
         {"name": "Sunny", "audience": "everyone", "within": {"where": "true"}},
     )
+    OF_PATH["bill"] = str(server.ok("POST", P + "/bills", {"name": "Sheet"}).json()["id"])
     OF_PATH["object"] = str(server.ok("POST", P + "/objects", {"name": "Sheet"}).json()["id"])
     OF_PATH["comment"] = str(
         server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()["id"]
@@ -73,7 +74,7 @@ def versioned_changes(server):
                 asked = asked.replace("{" + name + "}", value)
             assert "{" not in asked, asked
             found.append((method.upper(), asked))
-    assert len(found) == 28, found
+    assert len(found) == 30, found
     return found
 
 
@@ -98,8 +99,12 @@ BODIES = {
 }
 
 
+WITH_BODY = ("PATCH", "PUT")
+
+
 def body_of(asked):
-    other = {"name": "Sheet"} if "/objects/" in asked else {"text": "Look!"}
+    has_name = "/objects/" in asked or "/bills/" in asked
+    other = {"name": "Sheet"} if has_name else {"text": "Look!"}
     return BODIES.get(asked, other)
 
 
@@ -112,7 +117,7 @@ def changes(server):
 def test_versions_are_not_demanded_at_first(server, changes):
     assert server.get(P).json()["require_if_match"] is False
     for method, asked in changes:
-        if method == "PATCH":
+        if method in WITH_BODY:
             server.ok(method, asked, body_of(asked))
 
 
@@ -126,7 +131,7 @@ def test_a_project_may_demand_them(server):
 
 def test_demanded(server, changes):
     for method, asked in changes:
-        body = body_of(asked) if method == "PATCH" else None
+        body = body_of(asked) if method in WITH_BODY else None
         answer = server.request(method, asked, body)
         problem = answer.json()
         assert (
@@ -137,7 +142,7 @@ def test_demanded(server, changes):
         assert empty.status == 428, (method, asked, empty)
         stale = server.request(method, asked, body, headers={"If-Match": '"v999"'})
         assert stale.status == 412, (method, asked, stale)
-        if method == "PATCH":
+        if method in WITH_BODY:
             etag = server.get(address_of_version(asked)).headers["ETag"]
             server.ok(method, asked, body, headers={"If-Match": etag})
             server.ok(method, asked, body, headers={"If-Match": "*"})

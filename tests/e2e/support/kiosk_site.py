@@ -183,6 +183,7 @@ def sweep(server, secret, tour, files, thread):
         "kiosk": "1",
         "group": "1",
         "object": "1",
+        "bill": "1",
         "entry": "layer-1",
         "provider": "museum",
     }

@@ -185,6 +185,7 @@ def words(server, public):
         "user": ["owner"],
         "group": ["1"],
         "object": ["1"],
+        "bill": ["1"],
         "entry": ["layer-1"],
         "session": ["1"],
         "token": ["1"],

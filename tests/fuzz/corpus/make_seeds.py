@@ -629,7 +629,19 @@ POSES = {  # the first byte selects the names; a line of %% is between two files
     b"0 1 0 1 0 0 0 0 -1</xcr:Rotation><xcr:DistortionCoeficients>0.2 0 0 0 0 0"
     b"</xcr:DistortionCoeficients></rdf:Description></rdf:RDF></x:xmpmeta>",
 }
+BILL = {  # the first byte selects the reader
+    "formula": b"\0(2 * 1,20 + 3.5\xc2\xb2) x 0,85 : 2 - 1^3=",
+    "tender.x83": b'\1<GAEB xmlns="http://www.gaeb.de/GAEB_DA_XML/DA83/3.3"><PrjInfo><Cur>EUR</Cur>'
+    b"</PrjInfo><Award><DP>83</DP><BoQ><BoQInfo><Name>B</Name></BoQInfo><BoQBody>"
+    b'<BoQCtgy RNoPart="01"><LblTx><p><span>Stone</span></p></LblTx><BoQBody><Remark><p>Note</p>'
+    b'</Remark><Itemlist><Item RNoPart="0010" RNoIndex="A"><Qty>1.5</Qty><QU>m2</QU><UP>2,5</UP>'
+    b"<Description><CompleteText><DetailTxt><Text><p>Long<br/>text</p></Text></DetailTxt>"
+    b"<OutlineText><OutlTxt><TextOutlTxt><p>Short</p></TextOutlTxt></OutlTxt></OutlineText>"
+    b"</CompleteText></Description></Item></Itemlist></BoQBody></BoQCtgy></BoQBody></BoQ></Award>"
+    b"</GAEB>",
+}
 for folder, seeds in (
+    ("bill", BILL),
     ("poses", POSES),
     ("presence", PRESENCE),
     ("sign_on", SIGN_ON),

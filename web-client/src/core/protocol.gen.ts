@@ -1922,6 +1922,196 @@ export interface ObjectPatch {
   name: ObjectName;
 }
 
+/** Exact decimal number, as text. */
+export type BillDecimal = string;
+
+/** How the quantity of a position is rounded. */
+export interface BillRounding {
+  /** Round the sum of the position, or the quantity of each element. Default: "sum". */
+  each?: "sum" | "element";
+  /** Number of decimal places. Default: 2. */
+  places?: number;
+  /** Directions refer to the amount without its sign. Default: "half_up". */
+  mode?: "half_up" | "up" | "down";
+  /** Smallest billed size: smaller elements count as this size. Does not apply to deductions and to hand measurements. */
+  smallest?: BillDecimal;
+}
+
+/** Depth of a volume: exactly one member. */
+export interface BillDepth {
+  /** The same depth for all elements. */
+  metres?: BillDecimal;
+  /** Id or slug of a column of the table with numbers in mm, cm or m. */
+  column?: string;
+  /** Slug of a layer on each model with the depth in mm, cm or m. The mean of the depths is weighted by area. */
+  layer?: string;
+}
+
+/** Size class: only elements whose size is greater than `over` and at most `up_to`. */
+export interface BillSize {
+  /** The size in m² or m. Default: "area". */
+  of?: "area" | "length";
+  over?: BillDecimal;
+  up_to?: BillDecimal;
+}
+
+/** Elements that a position counts. Either the records of a table, on all layers of the table, or one layer, whose classes are the elements. */
+export interface BillRule {
+  /** Id of a table of the project. Its records are the elements, one for each layer where they are painted. */
+  table?: number;
+  /** Only this model. Required with `layer`. */
+  model?: number;
+  /** Id of a layer. With `table`, only this layer. Without it, the classes of the layer are the elements. */
+  layer?: number;
+  /** Condition over the columns of the table, as in the filter of records. */
+  where?: string;
+  /** Without `table`: only these values of the layer. */
+  values?: number[];
+  /** Area in m², length of the lines in m, number of elements, or area times depth in m³. */
+  measure: "area" | "length" | "count" | "volume";
+  depth?: BillDepth;
+  size?: BillSize;
+  /** Default: 1. */
+  factor?: BillDecimal;
+  /** The elements are openings, which are deducted. Default: false. */
+  deduct?: boolean;
+  /** With `deduct`: openings up to this size are not deducted, as in VOB/C. The size is the measure of the rule. */
+  overmeasured_up_to?: BillDecimal;
+  /** Name of the figure or plan that shows the elements. Default: "". */
+  figure?: string;
+}
+
+/** Line of a measurement by hand. */
+export interface HandMeasurement {
+  /** Default: "". */
+  text?: string;
+  /** Numbers with a decimal comma or point, + - * / ^ and parentheses. */
+  formula: string;
+  /** Id of the measured line that this line replaces. Default: the line is added. */
+  replaces?: string;
+  /** Default: "". */
+  remark?: string;
+  /** The user who entered the line. The server sets it. Default: "". */
+  user?: string;
+  /** When the line was entered or changed. The server sets it. Default: "". */
+  time?: string;
+}
+
+/** Group or position of a bill. */
+export interface BillItem {
+  /** Ordinal number, unique in the bill. Each part before the last is a group of the bill. */
+  number: string;
+  /** Default: "position". */
+  kind?: "position" | "group";
+  /** Default: "". */
+  short_text?: string;
+  /** Default: "". */
+  long_text?: string;
+  /** Unit of a position: m2, m, m3, St, psch, or any other unit for hand measurements. Default: "". */
+  unit?: string;
+  /** Quantity of the tender. */
+  quantity?: BillDecimal;
+  unit_price?: BillDecimal;
+  rounding?: BillRounding;
+  rules?: BillRule[];
+  measurements?: HandMeasurement[];
+}
+
+/** Bill of quantities. */
+export interface BillWrite {
+  /** Unique in the project, ignoring case. */
+  name: string;
+  /** Default: "EUR". */
+  currency?: string;
+  /** In the order of the bill. Groups precede their positions. */
+  items?: BillItem[];
+}
+
+/** Bill of quantities. */
+export interface Bill {
+  id: number;
+  name: string;
+  currency: string;
+  items: BillItem[];
+  version: number;
+}
+
+/** Bill that was imported. */
+export interface BillImported {
+  bill: Bill;
+  phase: string;
+  /** What was left out or changed. */
+  remarks: string[];
+}
+
+/** Bill in a list. */
+export interface BillEntry {
+  id: number;
+  name: string;
+  positions: number;
+  version: number;
+}
+
+/** Bills of a project, sorted by id. */
+export interface BillList {
+  bills: BillEntry[];
+  total: number;
+}
+
+/** Line of the proof. */
+export interface BillLine {
+  /** Names the element in the bill, for `replaces` of hand measurements. */
+  id: string;
+  /** Number of the rule of the position. Absent for hand measurements. */
+  rule?: number;
+  model?: number;
+  model_name?: string;
+  layer?: number;
+  layer_name?: string;
+  table?: number;
+  /** Key of the record. */
+  key?: number;
+  /** Name of the record or class, or text of the hand measurement. */
+  title: string;
+  figure?: string;
+  /** Path of the page that shows the element. */
+  link?: string;
+  formula?: string;
+  remark?: string;
+  user?: string;
+  time?: string;
+  /** Measured value with at most 6 places, without the factor. */
+  measured: string;
+  factor: string;
+  /** What the line adds to the sum of the position. Negative for deductions. */
+  billed: string;
+  effect: "billed" | "smallest" | "deducted" | "overmeasured" | "replaced";
+}
+
+/** Position with its measured quantity. */
+export interface BillPosition {
+  number: string;
+  short_text: string;
+  unit: string;
+  /** Exact rounded sum of the lines. */
+  quantity: string;
+  tendered?: string;
+  unit_price?: string;
+  /** Quantity times unit price, rounded to 2 places. */
+  total?: string;
+  lines: BillLine[];
+}
+
+/** Quantities of a bill with the proof. */
+export interface BillQuantities {
+  bill: number;
+  version: number;
+  currency: string;
+  positions: BillPosition[];
+  /** Sum of the totals. */
+  total: string;
+}
+
 /** Layer that a step of an analysis read. */
 export interface AnalysisInput {
   /** Id of the layer. */

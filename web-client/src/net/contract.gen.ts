@@ -2090,6 +2090,107 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/projects/{project}/bills": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        /** List the bills of quantities of a project */
+        get: operations["list_bills"];
+        put?: never;
+        /** Create a bill of quantities */
+        post: operations["create_bill"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/projects/{project}/bills/{bill}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bill: components["parameters"]["bill"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        /** Get a bill of quantities */
+        get: operations["get_bill"];
+        /** Replace a bill of quantities */
+        put: operations["replace_bill"];
+        post?: never;
+        /** Delete a bill of quantities */
+        delete: operations["delete_bill"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/projects/{project}/bills/{bill}/file": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bill: components["parameters"]["bill"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        /** Download a bill with its quantities as XLSX or GAEB */
+        get: operations["bill_file"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/projects/{project}/bills/{bill}/quantities": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                bill: components["parameters"]["bill"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        /** Measure the positions of a bill */
+        get: operations["bill_quantities"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/projects/{project}/bills/gaeb": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Import a bill of quantities from a GAEB file */
+        post: operations["import_bill"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/projects/{project}/bin": {
         parameters: {
             query?: never;
@@ -2884,6 +2985,37 @@ export interface components {
          * @example #d04020
          */
         BackgroundColor: wire.BackgroundColor;
+        /** Bill of quantities */
+        Bill: wire.Bill;
+        /**
+         * Exact decimal number, as text
+         * @example 12.35
+         */
+        BillDecimal: wire.BillDecimal;
+        /** Depth of a volume: exactly one member */
+        BillDepth: wire.BillDepth;
+        /** Bill in a list */
+        BillEntry: wire.BillEntry;
+        /** Bill that was imported */
+        BillImported: wire.BillImported;
+        /** Group or position of a bill */
+        BillItem: wire.BillItem;
+        /** Line of the proof */
+        BillLine: wire.BillLine;
+        /** Bills of a project, sorted by id */
+        BillList: wire.BillList;
+        /** Position with its measured quantity */
+        BillPosition: wire.BillPosition;
+        /** Quantities of a bill with the proof */
+        BillQuantities: wire.BillQuantities;
+        /** How the quantity of a position is rounded */
+        BillRounding: wire.BillRounding;
+        /** Elements that a position counts */
+        BillRule: wire.BillRule;
+        /** Size class: only elements whose size is greater than `over` and at most `up_to` */
+        BillSize: wire.BillSize;
+        /** Bill of quantities */
+        BillWrite: wire.BillWrite;
         /** Deleted item that can be restored */
         BinEntry: wire.BinEntry;
         /** Kind and id of a deleted item, or for a record the id of its table and its key */
@@ -3039,6 +3171,8 @@ export interface components {
         GroupPerson: wire.GroupPerson;
         /** Project in which a group has a role */
         GroupProject: wire.GroupProject;
+        /** Line of a measurement by hand */
+        HandMeasurement: wire.HandMeasurement;
         /** Records that a view highlights */
         Highlight: wire.Highlight;
         /** Bin of a histogram */
@@ -3914,6 +4048,7 @@ export interface components {
         after: string;
         annotation: string;
         at: string;
+        bill: number;
         collection: string;
         column: string;
         comment: number;
@@ -8128,6 +8263,221 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ActivityList"];
+                };
+            };
+        };
+    };
+    list_bills: {
+        parameters: {
+            query?: {
+                after?: components["parameters"]["after"];
+                limit?: components["parameters"]["limit"];
+                offset?: components["parameters"]["offset"];
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BillList"];
+                };
+            };
+        };
+    };
+    create_bill: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BillWrite"];
+            };
+        };
+        responses: {
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bill"];
+                };
+            };
+        };
+    };
+    get_bill: {
+        parameters: {
+            query?: never;
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                bill: components["parameters"]["bill"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bill"];
+                };
+            };
+        };
+    };
+    replace_bill: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+                "If-Match"?: components["parameters"]["if_match"];
+            };
+            path: {
+                bill: components["parameters"]["bill"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BillWrite"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Bill"];
+                };
+            };
+        };
+    };
+    delete_bill: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+                "If-Match"?: components["parameters"]["if_match"];
+            };
+            path: {
+                bill: components["parameters"]["bill"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+        };
+    };
+    bill_file: {
+        parameters: {
+            query?: {
+                f?: "xlsx" | "x31" | "x83" | "x84" | "x86";
+                lang?: components["parameters"]["lang"];
+            };
+            header?: never;
+            path: {
+                bill: components["parameters"]["bill"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet": string;
+                    "application/xml": string;
+                };
+            };
+        };
+    };
+    bill_quantities: {
+        parameters: {
+            query?: {
+                lang?: components["parameters"]["lang"];
+            };
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                bill: components["parameters"]["bill"];
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BillQuantities"];
+                };
+            };
+        };
+    };
+    import_bill: {
+        parameters: {
+            query?: {
+                name?: string;
+            };
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/octet-stream": string;
+                "application/xml": string;
+                "multipart/form-data": {
+                    file?: string[];
+                };
+            };
+        };
+        responses: {
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BillImported"];
                 };
             };
         };

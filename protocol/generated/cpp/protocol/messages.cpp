@@ -759,6 +759,92 @@ void read(const nlohmann::json& json, ModelPatchSourceDownload& value) {
 
 nlohmann::json to_json(const ModelPatchSourceDownload& value) { return name(value); }
 
+std::string_view name(BillRoundingEach value) {
+  switch (value) {
+    case BillRoundingEach::sum: return "sum";
+    case BillRoundingEach::element: return "element";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, BillRoundingEach& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "sum") value = BillRoundingEach::sum;
+  if (text == "element") value = BillRoundingEach::element;
+}
+
+nlohmann::json to_json(const BillRoundingEach& value) { return name(value); }
+
+std::string_view name(BillRoundingMode value) {
+  switch (value) {
+    case BillRoundingMode::half_up: return "half_up";
+    case BillRoundingMode::up: return "up";
+    case BillRoundingMode::down: return "down";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, BillRoundingMode& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "half_up") value = BillRoundingMode::half_up;
+  if (text == "up") value = BillRoundingMode::up;
+  if (text == "down") value = BillRoundingMode::down;
+}
+
+nlohmann::json to_json(const BillRoundingMode& value) { return name(value); }
+
+std::string_view name(BillSizeOf value) {
+  switch (value) {
+    case BillSizeOf::area: return "area";
+    case BillSizeOf::length: return "length";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, BillSizeOf& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "area") value = BillSizeOf::area;
+  if (text == "length") value = BillSizeOf::length;
+}
+
+nlohmann::json to_json(const BillSizeOf& value) { return name(value); }
+
+std::string_view name(BillRuleMeasure value) {
+  switch (value) {
+    case BillRuleMeasure::area: return "area";
+    case BillRuleMeasure::length: return "length";
+    case BillRuleMeasure::count: return "count";
+    case BillRuleMeasure::volume: return "volume";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, BillRuleMeasure& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "area") value = BillRuleMeasure::area;
+  if (text == "length") value = BillRuleMeasure::length;
+  if (text == "count") value = BillRuleMeasure::count;
+  if (text == "volume") value = BillRuleMeasure::volume;
+}
+
+nlohmann::json to_json(const BillRuleMeasure& value) { return name(value); }
+
+std::string_view name(BillItemKind value) {
+  switch (value) {
+    case BillItemKind::position: return "position";
+    case BillItemKind::group: return "group";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, BillItemKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "position") value = BillItemKind::position;
+  if (text == "group") value = BillItemKind::group;
+}
+
+nlohmann::json to_json(const BillItemKind& value) { return name(value); }
+
 std::string_view name(RegionOperation value) {
   switch (value) {
     case RegionOperation::sieve: return "sieve";
@@ -2795,6 +2881,144 @@ void read(const nlohmann::json& json, ObjectPatch& value) {
 nlohmann::json to_json(const ObjectPatch& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "name", value.name);
+  return json;
+}
+
+void read(const nlohmann::json& json, BillRounding& value) {
+  read_optional_member(json, "each", value.each);
+  read_optional_member(json, "places", value.places);
+  read_optional_member(json, "mode", value.mode);
+  read_optional_member(json, "smallest", value.smallest);
+}
+
+nlohmann::json to_json(const BillRounding& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "each", value.each);
+  write_member(json, "places", value.places);
+  write_member(json, "mode", value.mode);
+  write_optional_member(json, "smallest", value.smallest);
+  return json;
+}
+
+void read(const nlohmann::json& json, BillDepth& value) {
+  read_optional_member(json, "metres", value.metres);
+  read_optional_member(json, "column", value.column);
+  read_optional_member(json, "layer", value.layer);
+}
+
+nlohmann::json to_json(const BillDepth& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "metres", value.metres);
+  write_optional_member(json, "column", value.column);
+  write_optional_member(json, "layer", value.layer);
+  return json;
+}
+
+void read(const nlohmann::json& json, BillSize& value) {
+  read_optional_member(json, "of", value.of);
+  read_optional_member(json, "over", value.over);
+  read_optional_member(json, "up_to", value.up_to);
+}
+
+nlohmann::json to_json(const BillSize& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "of", value.of);
+  write_optional_member(json, "over", value.over);
+  write_optional_member(json, "up_to", value.up_to);
+  return json;
+}
+
+void read(const nlohmann::json& json, BillRule& value) {
+  read_optional_member(json, "table", value.table);
+  read_optional_member(json, "model", value.model);
+  read_optional_member(json, "layer", value.layer);
+  read_optional_member(json, "where", value.where);
+  read_optional_member(json, "values", value.values);
+  read_member(json, "measure", value.measure);
+  read_optional_member(json, "depth", value.depth);
+  read_optional_member(json, "size", value.size);
+  read_optional_member(json, "factor", value.factor);
+  read_optional_member(json, "deduct", value.deduct);
+  read_optional_member(json, "overmeasured_up_to", value.overmeasured_up_to);
+  read_optional_member(json, "figure", value.figure);
+}
+
+nlohmann::json to_json(const BillRule& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "table", value.table);
+  write_optional_member(json, "model", value.model);
+  write_optional_member(json, "layer", value.layer);
+  write_optional_member(json, "where", value.where);
+  write_optional_member(json, "values", value.values);
+  write_member(json, "measure", value.measure);
+  write_optional_member(json, "depth", value.depth);
+  write_optional_member(json, "size", value.size);
+  write_optional_member(json, "factor", value.factor);
+  write_member(json, "deduct", value.deduct);
+  write_optional_member(json, "overmeasured_up_to", value.overmeasured_up_to);
+  write_member(json, "figure", value.figure);
+  return json;
+}
+
+void read(const nlohmann::json& json, HandMeasurement& value) {
+  read_optional_member(json, "text", value.text);
+  read_member(json, "formula", value.formula);
+  read_optional_member(json, "replaces", value.replaces);
+  read_optional_member(json, "remark", value.remark);
+  read_optional_member(json, "user", value.user);
+  read_optional_member(json, "time", value.time);
+}
+
+nlohmann::json to_json(const HandMeasurement& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "text", value.text);
+  write_member(json, "formula", value.formula);
+  write_optional_member(json, "replaces", value.replaces);
+  write_member(json, "remark", value.remark);
+  write_member(json, "user", value.user);
+  write_member(json, "time", value.time);
+  return json;
+}
+
+void read(const nlohmann::json& json, BillItem& value) {
+  read_member(json, "number", value.number);
+  read_optional_member(json, "kind", value.kind);
+  read_optional_member(json, "short_text", value.short_text);
+  read_optional_member(json, "long_text", value.long_text);
+  read_optional_member(json, "unit", value.unit);
+  read_optional_member(json, "quantity", value.quantity);
+  read_optional_member(json, "unit_price", value.unit_price);
+  read_optional_member(json, "rounding", value.rounding);
+  read_optional_member(json, "rules", value.rules);
+  read_optional_member(json, "measurements", value.measurements);
+}
+
+nlohmann::json to_json(const BillItem& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "number", value.number);
+  write_member(json, "kind", value.kind);
+  write_member(json, "short_text", value.short_text);
+  write_member(json, "long_text", value.long_text);
+  write_member(json, "unit", value.unit);
+  write_optional_member(json, "quantity", value.quantity);
+  write_optional_member(json, "unit_price", value.unit_price);
+  write_optional_member(json, "rounding", value.rounding);
+  write_optional_member(json, "rules", value.rules);
+  write_optional_member(json, "measurements", value.measurements);
+  return json;
+}
+
+void read(const nlohmann::json& json, BillWrite& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "currency", value.currency);
+  read_optional_member(json, "items", value.items);
+}
+
+nlohmann::json to_json(const BillWrite& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_member(json, "currency", value.currency);
+  write_optional_member(json, "items", value.items);
   return json;
 }
 

@@ -234,6 +234,21 @@ enum class Schema {
   ObjectName,
   ObjectCreate,
   ObjectPatch,
+  BillDecimal,
+  BillRounding,
+  BillDepth,
+  BillSize,
+  BillRule,
+  HandMeasurement,
+  BillItem,
+  BillWrite,
+  Bill,
+  BillImported,
+  BillEntry,
+  BillList,
+  BillLine,
+  BillPosition,
+  BillQuantities,
   Job,
   RegionOperation,
   CleanupReport,
@@ -438,7 +453,7 @@ enum class Schema {
   UnrolledLine,
   Unrolled,
 };
-constexpr int kSchemaCount = 412;
+constexpr int kSchemaCount = 427;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1930,6 +1945,154 @@ void read(const nlohmann::json& json, ObjectPatch& value);
 nlohmann::json to_json(const ObjectPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ObjectPatch> = Schema::ObjectPatch;
+
+enum class BillRoundingEach { sum, element };
+std::string_view name(BillRoundingEach value);
+void read(const nlohmann::json& json, BillRoundingEach& value);
+nlohmann::json to_json(const BillRoundingEach& value);
+
+enum class BillRoundingMode { half_up, up, down };
+std::string_view name(BillRoundingMode value);
+void read(const nlohmann::json& json, BillRoundingMode& value);
+nlohmann::json to_json(const BillRoundingMode& value);
+
+// How the quantity of a position is rounded.
+struct BillRounding {
+  // Round the sum of the position, or the quantity of each element.
+  BillRoundingEach each = BillRoundingEach::sum;
+  int places = 2;  // Number of decimal places.
+  // Directions refer to the amount without its sign.
+  BillRoundingMode mode = BillRoundingMode::half_up;
+  // Smallest billed size: smaller elements count as this size. Does not apply to deductions and to
+  // hand measurements.
+  std::optional<std::string> smallest;
+  bool operator==(const BillRounding&) const = default;
+};
+void read(const nlohmann::json& json, BillRounding& value);
+nlohmann::json to_json(const BillRounding& value);
+template <>
+inline constexpr Schema kSchemaOf<BillRounding> = Schema::BillRounding;
+
+// Depth of a volume: exactly one member.
+struct BillDepth {
+  std::optional<std::string> metres;  // The same depth for all elements.
+  // Id or slug of a column of the table with numbers in mm, cm or m.
+  std::optional<std::string> column;
+  // Slug of a layer on each model with the depth in mm, cm or m. The mean of the depths is weighted
+  // by area.
+  std::optional<std::string> layer;
+  bool operator==(const BillDepth&) const = default;
+};
+void read(const nlohmann::json& json, BillDepth& value);
+nlohmann::json to_json(const BillDepth& value);
+template <>
+inline constexpr Schema kSchemaOf<BillDepth> = Schema::BillDepth;
+
+enum class BillSizeOf { area, length };
+std::string_view name(BillSizeOf value);
+void read(const nlohmann::json& json, BillSizeOf& value);
+nlohmann::json to_json(const BillSizeOf& value);
+
+// Size class: only elements whose size is greater than `over` and at most `up_to`.
+struct BillSize {
+  BillSizeOf of = BillSizeOf::area;  // The size in m² or m.
+  std::optional<std::string> over;
+  std::optional<std::string> up_to;
+  bool operator==(const BillSize&) const = default;
+};
+void read(const nlohmann::json& json, BillSize& value);
+nlohmann::json to_json(const BillSize& value);
+template <>
+inline constexpr Schema kSchemaOf<BillSize> = Schema::BillSize;
+
+enum class BillRuleMeasure { area, length, count, volume };
+std::string_view name(BillRuleMeasure value);
+void read(const nlohmann::json& json, BillRuleMeasure& value);
+nlohmann::json to_json(const BillRuleMeasure& value);
+
+// Elements that a position counts. Either the records of a table, on all layers of the table, or one layer, whose classes are the elements.
+struct BillRule {
+  // Id of a table of the project. Its records are the elements, one for each layer where they are
+  // painted.
+  std::optional<std::int64_t> table;
+  std::optional<std::int64_t> model;  // Only this model. Required with `layer`.
+  // Id of a layer. With `table`, only this layer. Without it, the classes of the layer are the
+  // elements.
+  std::optional<std::int64_t> layer;
+  // Condition over the columns of the table, as in the filter of records.
+  std::optional<std::string> where;
+  std::optional<std::vector<double>> values;  // Without `table`: only these values of the layer.
+  // Area in m², length of the lines in m, number of elements, or area times depth in m³.
+  BillRuleMeasure measure{};
+  std::optional<BillDepth> depth;
+  std::optional<BillSize> size;
+  std::optional<std::string> factor;  // Default: 1.
+  bool deduct = false;  // The elements are openings, which are deducted.
+  // With `deduct`: openings up to this size are not deducted, as in VOB/C. The size is the measure
+  // of the rule.
+  std::optional<std::string> overmeasured_up_to;
+  std::string figure;  // Name of the figure or plan that shows the elements.
+  bool operator==(const BillRule&) const = default;
+};
+void read(const nlohmann::json& json, BillRule& value);
+nlohmann::json to_json(const BillRule& value);
+template <>
+inline constexpr Schema kSchemaOf<BillRule> = Schema::BillRule;
+
+// Line of a measurement by hand.
+struct HandMeasurement {
+  std::string text;
+  std::string formula;  // Numbers with a decimal comma or point, + - * / ^ and parentheses.
+  // Id of the measured line that this line replaces. Default: the line is added.
+  std::optional<std::string> replaces;
+  std::string remark;
+  std::string user;  // The user who entered the line. The server sets it.
+  std::string time;  // When the line was entered or changed. The server sets it.
+  bool operator==(const HandMeasurement&) const = default;
+};
+void read(const nlohmann::json& json, HandMeasurement& value);
+nlohmann::json to_json(const HandMeasurement& value);
+template <>
+inline constexpr Schema kSchemaOf<HandMeasurement> = Schema::HandMeasurement;
+
+enum class BillItemKind { position, group };
+std::string_view name(BillItemKind value);
+void read(const nlohmann::json& json, BillItemKind& value);
+nlohmann::json to_json(const BillItemKind& value);
+
+// Group or position of a bill.
+struct BillItem {
+  // Ordinal number, unique in the bill. Each part before the last is a group of the bill.
+  std::string number;
+  BillItemKind kind = BillItemKind::position;
+  std::string short_text;
+  std::string long_text;
+  // Unit of a position: m2, m, m3, St, psch, or any other unit for hand measurements.
+  std::string unit;
+  std::optional<std::string> quantity;  // Quantity of the tender.
+  std::optional<std::string> unit_price;
+  std::optional<BillRounding> rounding;
+  std::optional<std::vector<BillRule>> rules;
+  std::optional<std::vector<HandMeasurement>> measurements;
+  bool operator==(const BillItem&) const = default;
+};
+void read(const nlohmann::json& json, BillItem& value);
+nlohmann::json to_json(const BillItem& value);
+template <>
+inline constexpr Schema kSchemaOf<BillItem> = Schema::BillItem;
+
+// Bill of quantities.
+struct BillWrite {
+  std::string name;  // Unique in the project, ignoring case.
+  std::string currency = "EUR";
+  // In the order of the bill. Groups precede their positions.
+  std::optional<std::vector<BillItem>> items;
+  bool operator==(const BillWrite&) const = default;
+};
+void read(const nlohmann::json& json, BillWrite& value);
+nlohmann::json to_json(const BillWrite& value);
+template <>
+inline constexpr Schema kSchemaOf<BillWrite> = Schema::BillWrite;
 
 // Bin of a histogram. Values from `from` (included) to `to` (excluded). The last bin includes `to`.
 struct HistogramBin {

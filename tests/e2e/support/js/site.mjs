@@ -104,6 +104,11 @@ export class Site {
     "vertices.csv": Buffer.from("1\n".repeat((kSide + 1) ** 2)),
     "empty.zip": Buffer.concat([Buffer.from("PK\x05\x06"), Buffer.alloc(18)]),
     "poses.csv": Buffer.from(poses_of("picture.png")),
+    "tender.x83": Buffer.from(
+      '<GAEB xmlns="http://www.gaeb.de/GAEB_DA_XML/DA83/3.3"><Award><DP>83</DP><BoQ><BoQBody>' +
+        '<Itemlist><Item RNoPart="0010"><Qty>2.5</Qty><QU>m2</QU></Item></Itemlist>' +
+        "</BoQBody></BoQ></Award></GAEB>",
+    ),
     "letter.txt": Buffer.from("A letter of 1903.\n"),
     "noise.bin": Buffer.from(Array.from({ length: 3000 }, (_, n) => (n * n * 31) % 256)),
   };
@@ -232,6 +237,7 @@ export class Site {
       });
     await this.#undo();
     await server.json("POST", "/projects/site/objects", { name: "Wall" });
+    await server.json("POST", "/projects/site/bills", { name: "Facade" });
     await server.json("PATCH", "/models/wall", { object: 1, survey_date: "2019-05-01" });
     await server.json("POST", "/models/wall/layers", {
       name: "Risk",
@@ -379,6 +385,8 @@ export class Site {
         return (
           await this.#post(`/tools?name=${encodeURIComponent(name)}`, "picture.png", "image/png")
         ).slug;
+      case "bill":
+        return String((await server.json("POST", "/projects/site/bills", { name })).id);
       case "object":
         return String((await server.json("POST", "/projects/site/objects", { name })).id);
       case "table":

@@ -143,6 +143,7 @@ export const path_words = {
   snapshot: mostly("first", "1"),
   selection: mostly("sunny", "1"),
   object: mostly("1"),
+  bill: mostly("1"),
   kiosk: mostly("1"),
   file: mostly("1"),
   entry: mostly("layer-1", "model-1", "record-1-1"),
@@ -218,6 +219,7 @@ export const content_of = {
   "text/turtle": file("terms.ttl"),
   "application/rdf+xml": file("terms.rdf"),
   "application/geo+json": file("map.geojson"),
+  "application/xml": file("tender.x83"),
   "multipart/form-data": file("map.geojson", "picture.png", "letter.txt", "wall.ply"),
 };
 
@@ -387,6 +389,12 @@ export const particulars = {
   delete_snapshot: { path: { model: one("wall"), ...spare("snapshot") } },
   delete_selection: { path: { model: one("wall"), ...spare("selection") } },
   change_selection: { path: { model: one("wall"), ...spare("selection") } },
+  delete_bill: { path: { project: one("site"), ...spare("bill", "1") } },
+  replace_bill: { path: { project: one("site"), ...spare("bill", "1") } },
+  import_bill: {
+    path: { project: one("site") },
+    content: { "application/octet-stream": file("tender.x83", "letter.txt") },
+  },
   delete_object: { path: { project: one("site"), ...spare("object", "1") } },
   change_snapshot: { path: { model: one("wall"), ...spare("snapshot") } },
   change_view: { path: { model: one("wall"), ...spare("view", "west") } },

@@ -1,0 +1,398 @@
+#include "app/bills/bill_elements.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "app/figures/class_names.h"
+#include "app/records/record_measures.h"
+#include "bill/units.h"
+#include "domain/layers/layer.h"
+#include "domain/people/question.h"
+#include "domain/scene/model.h"
+#include "domain/tables/table.h"
+#include "expression/expression_parser.h"
+#include "query/statistics/key_areas.h"
+#include "query/statistics/quantities.h"
+#include "query/statistics/statistics.h"
+#include "room/queries.h"
+#include "room/room.h"
+#include "room/rooms.h"
+#include "room/selection.h"
+#include "store/content/layers.h"
+#include "store/content/models.h"
+#include "store/store.h"
+#include "store/tables/records.h"
+#include "store/tables/tables.h"
+
+namespace strata::app {
+namespace {
+
+using bill::Element;
+using bill::ExactNumber;
+using Measure = protocol::BillRuleMeasure;
+using KeyAreas = std::map<std::int64_t, query::KeyArea>;
+
+tl::unexpected<Error> not_there(const std::string& what, const std::string& field) {
+  return fail(ErrorCode::invalid, "Source not found",
+              "The " + what +
+                  " does not exist in this project, or you cannot see it. Choose "
+                  "another one.",
+              field);
+}
+
+// An entity that a rule names but that does not exist is an error of the rule.
+template <class T>
+Result<T> of_rule(Result<T> found, const std::string& what, const std::string& field) {
+  if (!found && found.error().code == ErrorCode::not_found) return not_there(what, field);
+  return found;
+}
+
+tl::unexpected<Error> no_unit(const std::string& what, const std::string& field) {
+  return fail(ErrorCode::invalid, "Unit of the depth missing",
+              "The unit of the " + what + " is not mm, cm or m. Set its unit.", field);
+}
+
+// The records of a rule.
+struct ChosenRecords {
+  Table table;
+  std::vector<Record> records;  // sorted by key
+  RecordNames names;
+};
+
+void place_at(Element& element, const Model& model) {
+  element.model = model.id.number();
+  element.model_name = model.name;
+  element.link = "/models/" + model.slug;
+}
+
+}  // namespace
+
+// What the rules of a bill share.
+struct BillElements::Cache {
+  const Services& services;
+  const BillSource source;
+  std::map<ModelId, Model> models;
+  std::map<LayerId, KeyAreas> areas;
+
+  Result<void> load_models() {
+    if (!models.empty()) return {};
+    for (Model& model : STRATA_TRY(services.store.models().all(source.project)))
+      models.emplace(model.id, std::move(model));
+    return {};
+  }
+
+  Result<const Model*> model(ModelId id) const {
+    const auto found = models.find(id);
+    if (found == models.end()) return not_there("model " + to_string(id), "model");
+    return &found->second;
+  }
+
+  Result<const KeyAreas*> areas_of(const Layer& layer) {
+    const auto known = areas.find(layer.id);
+    if (known != areas.end()) return &known->second;
+    KeyAreas found;
+    if (layer.sequence > 0) {  // otherwise it was never painted
+      const auto room =
+          STRATA_TRY(services.rooms.open_to_read(to_string(layer.model_id), source.seen_by));
+      found = STRATA_TRY(room->queries().key_areas(layer.slug));
+    }
+    return &areas.emplace(layer.id, std::move(found)).first->second;
+  }
+};
+
+namespace {
+
+Result<ChosenRecords> chosen_records(const Services& services, const BillSource& source,
+                                     const protocol::BillRule& rule) {
+  store::Store& store = services.store;
+  auto table = STRATA_TRY(of_rule(store.tables().find(std::to_string(*rule.table), source.seen_by),
+                                  "table " + std::to_string(*rule.table), "table"));
+  if (table.project_id != source.project)
+    return not_there("table " + std::to_string(*rule.table), "table");
+  store::RecordQuery query;
+  query.limit = store::kMaxRecords;
+  if (rule.where)
+    query.filter = STRATA_TRY(query::parse_condition(*rule.where, "where", query::Names::columns));
+  auto page = store.records().page(table.id, source.seen_by, query);
+  if (!page) {
+    Error problem = page.error();
+    if (problem.field == "filter") problem.field = "where";
+    return tl::unexpected(std::move(problem));
+  }
+  std::ranges::sort(page->records, {}, &Record::key);
+  std::vector<std::int64_t> keys;
+  for (const Record& record : page->records) keys.push_back(record.key);
+  auto names = STRATA_TRY(record_names(store, table.id, source.seen_by, std::move(keys),
+                                       std::nullopt, source.language));
+  return ChosenRecords{std::move(page->table), std::move(page->records), std::move(names)};
+}
+
+// The depths in meters of the elements of a volume.
+class Depths {
+ public:
+  static Result<Depths> of(const protocol::BillRule& rule, const Table* table) {
+    Depths depths;
+    if (!rule.depth) return depths;
+    if (rule.depth->metres) depths.metres_ = ExactNumber::parse(*rule.depth->metres);
+    if (rule.depth->column) {
+      const Column* column = find_column(table->columns, *rule.depth->column);
+      if (!column || (column->kind != ColumnKind::integer && column->kind != ColumnKind::numeric))
+        return fail(ErrorCode::invalid, "Depth not found",
+                    "The table has no column `" + *rule.depth->column + "` with numbers.",
+                    "depth.column");
+      const auto unit = bill::metres_of_unit(column->unit);
+      if (!unit) return no_unit("column `" + column->name + "`", "depth.column");
+      depths.column_ = column->id;
+      depths.unit_ = *unit;
+    }
+    depths.layer_ = rule.depth->layer;
+    return depths;
+  }
+
+  // Returns area times depth. A record without a depth has no volume. `value` is the key or class
+  // on the layer.
+  Result<ExactNumber> volume(const Services& services, const BillSource& source, const Layer& layer,
+                             double value, double area_m2, const Record* record) {
+    if (layer_) return measured_volume(services, source, layer, value);
+    const ExactNumber area = ExactNumber::measured(area_m2);
+    if (metres_) return area * *metres_;
+    const auto cell = record->values.find(*column_);
+    if (cell == record->values.end() || !cell->second.is_number()) return ExactNumber(0);
+    return area * ExactNumber::measured(cell->second.get<double>() * unit_);
+  }
+
+ private:
+  Result<ExactNumber> measured_volume(const Services& services, const BillSource& source,
+                                      const Layer& layer, double value) {
+    if (++classes_ > kMaxDepthClasses)
+      return fail(ErrorCode::invalid, "Too many depths",
+                  "A rule can read the depths of at most " + std::to_string(kMaxDepthClasses) +
+                      " elements from a layer. Choose fewer elements, or use a column.",
+                  "depth.layer");
+    const std::string model = to_string(layer.model_id);
+    const auto depth =
+        STRATA_TRY(of_rule(services.store.layers().find(layer.model_id, *layer_, source.seen_by),
+                           "layer `" + *layer_ + "` with the depth", "depth.layer"));
+    const auto unit = bill::metres_of_unit(depth.unit);
+    if (!unit) return no_unit("layer `" + depth.name + "`", "depth.layer");
+    if (depth.sequence == 0) return ExactNumber(0);
+    const auto room = STRATA_TRY(services.rooms.open_to_read(model, source.seen_by));
+    Expression number, painted, is_value;
+    number.op = Expression::Op::number;
+    number.number = value;
+    painted.op = Expression::Op::layer;
+    painted.name = layer.slug;
+    is_value.op = Expression::Op::equal;
+    is_value.parts = {painted, number};
+    room::Selection selection;
+    selection.where = is_value;
+    selection.seen_by = source.seen_by;
+    const auto found = STRATA_TRY(room->queries().statistics(depth.slug, selection));
+    return ExactNumber::measured(found.texels > 0 ? found.area_m2 * found.mean * *unit : 0);
+  }
+
+  std::optional<ExactNumber> metres_;
+  std::optional<ColumnId> column_;
+  std::optional<std::string> layer_;
+  double unit_ = 1;
+  std::size_t classes_ = 0;
+};
+
+Result<void> check_count(std::size_t elements) {
+  if (elements <= bill::kMaxLines) return {};
+  return fail(ErrorCode::invalid, "Too many elements",
+              "A bill can have at most " + std::to_string(bill::kMaxLines) +
+                  " lines. Choose fewer elements, or divide the bill.",
+              "where");
+}
+
+// The lines and points of the chosen records on one model.
+struct ModelFeatures {
+  std::map<std::int64_t, double> lengths_m;  // of records with lines
+  std::set<std::int64_t> keys;               // of records with lines or points
+
+  double length_of(std::int64_t key) const {
+    const auto found = lengths_m.find(key);
+    return found == lengths_m.end() ? 0.0 : found->second;
+  }
+};
+
+bool needs_features(const protocol::BillRule& rule) {
+  return rule.measure == Measure::length || rule.measure == Measure::count ||
+         (rule.size && rule.size->of == protocol::BillSizeOf::length);
+}
+
+Result<ModelFeatures> features_on(const Services& services, const ChosenRecords& chosen,
+                                  const Model& model) {
+  ModelFeatures features;
+  const auto measures = STRATA_TRY(RecordMeasures::of_place(
+      services, {chosen.table, model, std::nullopt}, chosen.table.columns));
+  for (const Record& record : chosen.records) {
+    const auto values = measures.of(record);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] <= 0) continue;
+      features.keys.insert(record.key);
+      if (measures.names()[i] == kLengthMeasure) features.lengths_m[record.key] = values[i];
+    }
+  }
+  return features;
+}
+
+// Reads the elements of one rule over the records of a table.
+class RecordElements {
+ public:
+  RecordElements(BillElements::Cache& cache, const protocol::BillRule& rule,
+                 const ChosenRecords& chosen, Depths depths)
+      : cache_(cache), rule_(rule), chosen_(chosen), depths_(std::move(depths)) {
+    for (const Record& record : chosen.records) record_of_.emplace(record.key, &record);
+  }
+
+  Result<std::vector<Element>> read() {
+    if (needs_features(rule_))
+      for (const auto& [id, model] : cache_.models) {
+        check_question();
+        if (rule_.model && id != ModelId(*rule_.model)) continue;
+        features_[id] = STRATA_TRY(features_on(cache_.services, chosen_, model));
+      }
+    if (rule_.measure != Measure::length) STRATA_TRY(add_painted());
+    // Records with lines or points. Those that are painted have been counted.
+    const bool counts = rule_.measure == Measure::count && !rule_.layer;
+    if (rule_.measure == Measure::length || counts) STRATA_TRY(add_with_features(counts));
+    return std::move(elements_);
+  }
+
+ private:
+  Element element_of(const Model& model, std::int64_t key) const {
+    Element element;
+    place_at(element, model);
+    element.table = chosen_.table.id.number();
+    element.key = key;
+    const auto name = chosen_.names.find(key);
+    element.title =
+        name == chosen_.names.end() || name->second.empty() ? std::to_string(key) : name->second;
+    return element;
+  }
+
+  Result<void> add_painted() {
+    const bool sizes_lengths = rule_.size && rule_.size->of == protocol::BillSizeOf::length;
+    for (const Layer& layer : STRATA_TRY(
+             cache_.services.store.layers().of_table(chosen_.table.id, cache_.source.seen_by))) {
+      if (rule_.model && layer.model_id != ModelId(*rule_.model)) continue;
+      if (rule_.layer && layer.id != LayerId(*rule_.layer)) continue;
+      const Model* model = STRATA_TRY(cache_.model(layer.model_id));
+      const KeyAreas* areas = STRATA_TRY(cache_.areas_of(layer));
+      for (const auto& [key, area] : *areas) {
+        const auto record = record_of_.find(key);
+        if (record == record_of_.end()) continue;
+        check_question();
+        painted_.emplace(layer.model_id, key);
+        Element element = element_of(*model, key);
+        element.layer = layer.id.number();
+        element.layer_name = layer.name;
+        element.id = "layer " + to_string(layer.id) + " key " + std::to_string(key);
+        element.size = ExactNumber::measured(
+            sizes_lengths ? features_[layer.model_id].length_of(key) : area.area_m2);
+        element.measured = ExactNumber::measured(area.area_m2);
+        if (rule_.measure == Measure::count) element.measured = ExactNumber(1);
+        if (rule_.measure == Measure::volume)
+          element.measured =
+              STRATA_TRY(depths_.volume(cache_.services, cache_.source, layer,
+                                        static_cast<double>(key), area.area_m2, record->second));
+        elements_.push_back(std::move(element));
+        STRATA_TRY(check_count(elements_.size()));
+      }
+    }
+    return {};
+  }
+
+  Result<void> add_with_features(bool counts) {
+    for (const auto& [model_id, features] : features_) {
+      const Model* model = STRATA_TRY(cache_.model(model_id));
+      for (const std::int64_t key : features.keys) {
+        const double length_m = features.length_of(key);
+        if (counts ? painted_.contains({model_id, key}) : length_m <= 0) continue;
+        Element element = element_of(*model, key);
+        element.id = "model " + to_string(model_id) + " key " + std::to_string(key);
+        element.size = ExactNumber::measured(length_m);
+        element.measured = counts ? ExactNumber(1) : element.size;
+        elements_.push_back(std::move(element));
+        STRATA_TRY(check_count(elements_.size()));
+      }
+    }
+    return {};
+  }
+
+  BillElements::Cache& cache_;
+  const protocol::BillRule& rule_;
+  const ChosenRecords& chosen_;
+  Depths depths_;
+  std::map<std::int64_t, const Record*> record_of_;
+  std::map<ModelId, ModelFeatures> features_;
+  std::set<std::pair<ModelId, std::int64_t>> painted_;
+  std::vector<Element> elements_;
+};
+
+}  // namespace
+
+BillElements::BillElements(const Services& services, BillSource source)
+    : cache_(new Cache{services, std::move(source), {}, {}}) {}
+BillElements::~BillElements() = default;
+
+Result<std::vector<Element>> BillElements::of(const protocol::BillRule& rule) {
+  STRATA_TRY(cache_->load_models());
+  if (rule.model) STRATA_TRY(cache_->model(ModelId(*rule.model)));
+  if (!rule.table) return of_layer(rule);
+  const ChosenRecords chosen = STRATA_TRY(chosen_records(cache_->services, cache_->source, rule));
+  const auto depths = STRATA_TRY(Depths::of(rule, &chosen.table));
+  return RecordElements(*cache_, rule, chosen, depths).read();
+}
+
+Result<std::vector<Element>> BillElements::of_layer(const protocol::BillRule& rule) {
+  const auto& [services, source, models, areas] = *cache_;
+  const Model* model = STRATA_TRY(cache_->model(ModelId(*rule.model)));
+  const auto layer = STRATA_TRY(
+      of_rule(services.store.layers().find(model->id, std::to_string(*rule.layer), source.seen_by),
+              "layer " + std::to_string(*rule.layer), "layer"));
+  if (layer.table)
+    return fail(ErrorCode::invalid, "Layer of records",
+                "The elements of layer `" + layer.name +
+                    "` are records. Add its `table` to the "
+                    "rule.",
+                "table");
+  std::vector<Element> elements;
+  if (layer.sequence == 0) return elements;
+  auto depths = STRATA_TRY(Depths::of(rule, nullptr));
+  const auto room = STRATA_TRY(services.rooms.open_to_read(to_string(model->id), source.seen_by));
+  const auto all = STRATA_TRY(room->queries().quantities(layer.slug));
+  for (const query::Quantity& quantity : all.classes) {
+    check_question();
+    if (rule.values &&
+        (!quantity.value || std::ranges::find(*rule.values, *quantity.value) == rule.values->end()))
+      continue;
+    if (rule.depth && rule.depth->layer && !quantity.value)
+      return fail(ErrorCode::invalid, "Classes are ranges",
+                  "The depth of a layer can only be read for classes that are single values.",
+                  "depth.layer");
+    Element element;
+    place_at(element, *model);
+    element.layer = layer.id.number();
+    element.layer_name = layer.name;
+    element.title = quantity_text(quantity, quantity_label(quantity, layer, {}));
+    element.id = "layer " + to_string(layer.id) + " class " +
+                 (quantity.value ? ExactNumber::measured(*quantity.value).short_text()
+                                 : element.title.substr(0, 60));
+    element.size = element.measured = ExactNumber::measured(quantity.area_m2);
+    if (rule.measure == Measure::count)
+      element.measured = ExactNumber(static_cast<std::int64_t>(quantity.pieces));
+    if (rule.measure == Measure::volume)
+      element.measured = STRATA_TRY(depths.volume(
+          services, source, layer, quantity.value.value_or(0), quantity.area_m2, nullptr));
+    elements.push_back(std::move(element));
+    STRATA_TRY(check_count(elements.size()));
+  }
+  return elements;
+}
+
+}  // namespace strata::app
