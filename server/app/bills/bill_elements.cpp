@@ -5,9 +5,9 @@
 #include <memory>
 #include <set>
 
+#include "app/bills/bill_depths.h"
 #include "app/figures/class_names.h"
 #include "app/records/record_measures.h"
-#include "bill/units.h"
 #include "domain/layers/layer.h"
 #include "domain/people/question.h"
 #include "domain/scene/model.h"
@@ -15,11 +15,9 @@
 #include "expression/expression_parser.h"
 #include "query/statistics/key_areas.h"
 #include "query/statistics/quantities.h"
-#include "query/statistics/statistics.h"
 #include "room/queries.h"
 #include "room/room.h"
 #include "room/rooms.h"
-#include "room/selection.h"
 #include "store/content/layers.h"
 #include "store/content/models.h"
 #include "store/store.h"
@@ -33,26 +31,6 @@ using bill::Element;
 using bill::ExactNumber;
 using Measure = protocol::BillRuleMeasure;
 using KeyAreas = std::map<std::int64_t, query::KeyArea>;
-
-tl::unexpected<Error> not_there(const std::string& what, const std::string& field) {
-  return fail(ErrorCode::invalid, "Source not found",
-              "The " + what +
-                  " does not exist in this project, or you cannot see it. Choose "
-                  "another one.",
-              field);
-}
-
-// An entity that a rule names but that does not exist is an error of the rule.
-template <class T>
-Result<T> of_rule(Result<T> found, const std::string& what, const std::string& field) {
-  if (!found && found.error().code == ErrorCode::not_found) return not_there(what, field);
-  return found;
-}
-
-tl::unexpected<Error> no_unit(const std::string& what, const std::string& field) {
-  return fail(ErrorCode::invalid, "Unit of the depth missing",
-              "The unit of the " + what + " is not mm, cm or m. Set its unit.", field);
-}
 
 // The records of a rule.
 struct ChosenRecords {
@@ -85,7 +63,7 @@ struct BillElements::Cache {
 
   Result<const Model*> model(ModelId id) const {
     const auto found = models.find(id);
-    if (found == models.end()) return not_there("model " + to_string(id), "model");
+    if (found == models.end()) return no_such_source("model " + to_string(id), "model");
     return &found->second;
   }
 
@@ -110,7 +88,7 @@ Result<ChosenRecords> chosen_records(const Services& services, const BillSource&
   auto table = STRATA_TRY(of_rule(store.tables().find(std::to_string(*rule.table), source.seen_by),
                                   "table " + std::to_string(*rule.table), "table"));
   if (table.project_id != source.project)
-    return not_there("table " + std::to_string(*rule.table), "table");
+    return no_such_source("table " + std::to_string(*rule.table), "table");
   store::RecordQuery query;
   query.limit = store::kMaxRecords;
   if (rule.where)
@@ -128,77 +106,6 @@ Result<ChosenRecords> chosen_records(const Services& services, const BillSource&
                                        std::nullopt, source.language));
   return ChosenRecords{std::move(page->table), std::move(page->records), std::move(names)};
 }
-
-// The depths in meters of the elements of a volume.
-class Depths {
- public:
-  static Result<Depths> of(const protocol::BillRule& rule, const Table* table) {
-    Depths depths;
-    if (!rule.depth) return depths;
-    if (rule.depth->metres) depths.metres_ = ExactNumber::parse(*rule.depth->metres);
-    if (rule.depth->column) {
-      const Column* column = find_column(table->columns, *rule.depth->column);
-      if (!column || (column->kind != ColumnKind::integer && column->kind != ColumnKind::numeric))
-        return fail(ErrorCode::invalid, "Depth not found",
-                    "The table has no column `" + *rule.depth->column + "` with numbers.",
-                    "depth.column");
-      const auto unit = bill::metres_of_unit(column->unit);
-      if (!unit) return no_unit("column `" + column->name + "`", "depth.column");
-      depths.column_ = column->id;
-      depths.unit_ = *unit;
-    }
-    depths.layer_ = rule.depth->layer;
-    return depths;
-  }
-
-  // Returns area times depth. A record without a depth has no volume. `value` is the key or class
-  // on the layer.
-  Result<ExactNumber> volume(const Services& services, const BillSource& source, const Layer& layer,
-                             double value, double area_m2, const Record* record) {
-    if (layer_) return measured_volume(services, source, layer, value);
-    const ExactNumber area = ExactNumber::measured(area_m2);
-    if (metres_) return area * *metres_;
-    const auto cell = record->values.find(*column_);
-    if (cell == record->values.end() || !cell->second.is_number()) return ExactNumber(0);
-    return area * ExactNumber::measured(cell->second.get<double>() * unit_);
-  }
-
- private:
-  Result<ExactNumber> measured_volume(const Services& services, const BillSource& source,
-                                      const Layer& layer, double value) {
-    if (++classes_ > kMaxDepthClasses)
-      return fail(ErrorCode::invalid, "Too many depths",
-                  "A rule can read the depths of at most " + std::to_string(kMaxDepthClasses) +
-                      " elements from a layer. Choose fewer elements, or use a column.",
-                  "depth.layer");
-    const std::string model = to_string(layer.model_id);
-    const auto depth =
-        STRATA_TRY(of_rule(services.store.layers().find(layer.model_id, *layer_, source.seen_by),
-                           "layer `" + *layer_ + "` with the depth", "depth.layer"));
-    const auto unit = bill::metres_of_unit(depth.unit);
-    if (!unit) return no_unit("layer `" + depth.name + "`", "depth.layer");
-    if (depth.sequence == 0) return ExactNumber(0);
-    const auto room = STRATA_TRY(services.rooms.open_to_read(model, source.seen_by));
-    Expression number, painted, is_value;
-    number.op = Expression::Op::number;
-    number.number = value;
-    painted.op = Expression::Op::layer;
-    painted.name = layer.slug;
-    is_value.op = Expression::Op::equal;
-    is_value.parts = {painted, number};
-    room::Selection selection;
-    selection.where = is_value;
-    selection.seen_by = source.seen_by;
-    const auto found = STRATA_TRY(room->queries().statistics(depth.slug, selection));
-    return ExactNumber::measured(found.texels > 0 ? found.area_m2 * found.mean * *unit : 0);
-  }
-
-  std::optional<ExactNumber> metres_;
-  std::optional<ColumnId> column_;
-  std::optional<std::string> layer_;
-  double unit_ = 1;
-  std::size_t classes_ = 0;
-};
 
 Result<void> check_count(std::size_t elements) {
   if (elements <= bill::kMaxLines) return {};
@@ -244,7 +151,7 @@ Result<ModelFeatures> features_on(const Services& services, const ChosenRecords&
 class RecordElements {
  public:
   RecordElements(BillElements::Cache& cache, const protocol::BillRule& rule,
-                 const ChosenRecords& chosen, Depths depths)
+                 const ChosenRecords& chosen, BillDepths depths)
       : cache_(cache), rule_(rule), chosen_(chosen), depths_(std::move(depths)) {
     for (const Record& record : chosen.records) record_of_.emplace(record.key, &record);
   }
@@ -327,7 +234,7 @@ class RecordElements {
   BillElements::Cache& cache_;
   const protocol::BillRule& rule_;
   const ChosenRecords& chosen_;
-  Depths depths_;
+  BillDepths depths_;
   std::map<std::int64_t, const Record*> record_of_;
   std::map<ModelId, ModelFeatures> features_;
   std::set<std::pair<ModelId, std::int64_t>> painted_;
@@ -345,7 +252,7 @@ Result<std::vector<Element>> BillElements::of(const protocol::BillRule& rule) {
   if (rule.model) STRATA_TRY(cache_->model(ModelId(*rule.model)));
   if (!rule.table) return of_layer(rule);
   const ChosenRecords chosen = STRATA_TRY(chosen_records(cache_->services, cache_->source, rule));
-  const auto depths = STRATA_TRY(Depths::of(rule, &chosen.table));
+  const auto depths = STRATA_TRY(BillDepths::of(rule, &chosen.table));
   return RecordElements(*cache_, rule, chosen, depths).read();
 }
 
@@ -363,7 +270,7 @@ Result<std::vector<Element>> BillElements::of_layer(const protocol::BillRule& ru
                 "table");
   std::vector<Element> elements;
   if (layer.sequence == 0) return elements;
-  auto depths = STRATA_TRY(Depths::of(rule, nullptr));
+  auto depths = STRATA_TRY(BillDepths::of(rule, nullptr));
   const auto room = STRATA_TRY(services.rooms.open_to_read(to_string(model->id), source.seen_by));
   const auto all = STRATA_TRY(room->queries().quantities(layer.slug));
   for (const query::Quantity& quantity : all.classes) {
