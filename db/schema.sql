@@ -1867,6 +1867,8 @@ CREATE TABLE public.photographs (
     width integer,
     height integer,
     version bigint DEFAULT 1 NOT NULL,
+    rights_uri text DEFAULT ''::text NOT NULL,
+    rights_holder text DEFAULT ''::text NOT NULL,
     CONSTRAINT photographs_calibrated_height_check CHECK ((calibrated_height >= 0)),
     CONSTRAINT photographs_calibrated_width_check CHECK ((calibrated_width >= 0)),
     CONSTRAINT photographs_calibration_check CHECK ((cardinality(calibration) = 15)),
@@ -1874,6 +1876,8 @@ CREATE TABLE public.photographs (
     CONSTRAINT photographs_lens_check CHECK ((lens = ANY (ARRAY['pinhole'::text, 'brown'::text, 'rational'::text, 'fisheye'::text, 'division'::text]))),
     CONSTRAINT photographs_name_check CHECK (((octet_length(name) >= 1) AND (octet_length(name) <= 1024))),
     CONSTRAINT photographs_pose_check CHECK ((cardinality(pose) = 12)),
+    CONSTRAINT photographs_rights_holder_check CHECK ((octet_length(rights_holder) <= 2000)),
+    CONSTRAINT photographs_rights_uri_check CHECK ((octet_length(rights_uri) <= 8000)),
     CONSTRAINT photographs_unit_check CHECK ((unit = ANY (ARRAY['pixel'::text, 'longest_side'::text])))
 );
 
@@ -1905,6 +1909,13 @@ CREATE TABLE public.project_members (
     user_id bigint NOT NULL,
     role text NOT NULL,
     CONSTRAINT project_members_role_check CHECK ((role = ANY (ARRAY['viewer'::text, 'annotator'::text, 'curator'::text])))
+);
+
+CREATE TABLE public.project_metadata (
+    project_id bigint NOT NULL,
+    record jsonb NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT project_metadata_record_check CHECK (((jsonb_typeof(record) = 'object'::text) AND (octet_length((record)::text) <= 1048576)))
 );
 
 CREATE VIEW public.project_roles AS
@@ -2318,6 +2329,9 @@ ALTER TABLE ONLY public.project_groups
 
 ALTER TABLE ONLY public.project_members
     ADD CONSTRAINT project_members_pkey PRIMARY KEY (user_id, project_id);
+
+ALTER TABLE ONLY public.project_metadata
+    ADD CONSTRAINT project_metadata_pkey PRIMARY KEY (project_id);
 
 ALTER TABLE ONLY public.projects
     ADD CONSTRAINT projects_pkey PRIMARY KEY (id);
@@ -2850,6 +2864,9 @@ ALTER TABLE ONLY public.project_members
 
 ALTER TABLE ONLY public.project_members
     ADD CONSTRAINT project_members_user_id_fkey FOREIGN KEY (user_id) REFERENCES public.users(id);
+
+ALTER TABLE ONLY public.project_metadata
+    ADD CONSTRAINT project_metadata_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.record_columns
     ADD CONSTRAINT record_columns_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;

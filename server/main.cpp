@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   const std::map<std::string, strata::cli::Command> commands{
       {"serve", strata::cli::add_serve(app)},
       {"import", strata::cli::add_import(app)},
+      {"import-deposit", strata::cli::add_import_deposit(app)},
       {"demo", strata::cli::add_demo(app)},
       {"migrate", strata::cli::add_migrate(app)},
       {"doctor", strata::cli::add_doctor(app)},

@@ -39,7 +39,7 @@ const howTo = {
     "rate-damage",
     "use-the-trash",
   ],
-  "Show results": ["save-views", "print-figures", "write-a-condition-report", "export-to-3d-programs", "connect-gis-programs", "publish-linked-data", "make-tours", "run-a-kiosk", "show-the-demo"],
+  "Show results": ["save-views", "print-figures", "write-a-condition-report", "export-to-3d-programs", "connect-gis-programs", "publish-linked-data", "deposit-a-project", "make-tours", "run-a-kiosk", "show-the-demo"],
   Scripts: ["write-scripts", "run-an-analysis", "query-with-sql"],
   Administration: [
     "install",
@@ -62,6 +62,7 @@ const reference = [
   "computed-layers",
   "tables",
   "formats",
+  "deposits",
   "settings",
   "http",
   "errors",

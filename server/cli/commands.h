@@ -11,6 +11,7 @@ namespace strata::cli {
 using Command = std::function<int()>;
 Command add_serve(CLI::App& app);
 Command add_import(CLI::App& app);
+Command add_import_deposit(CLI::App& app);
 Command add_demo(CLI::App& app);
 Command add_migrate(CLI::App& app);
 Command add_doctor(CLI::App& app);

@@ -32,6 +32,7 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options,
 
 Projects& Store::projects() { return impl_->projects; }
 Models& Store::models() { return impl_->models; }
+Metadata& Store::metadata() { return impl_->metadata; }
 Objects& Store::objects() { return impl_->objects; }
 Bills& Store::bills() { return impl_->bills; }
 SurfaceImages& Store::surface_images() { return impl_->images; }

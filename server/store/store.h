@@ -27,6 +27,7 @@ class TourFiles;
 class Layers;
 class SurfaceImages;
 class Members;
+class Metadata;
 class Models;
 class NamedParts;
 class Nodes;
@@ -79,8 +80,9 @@ class Store {
   // They exist as long as the store.
   Projects& projects();
   Models& models();
-  Objects& objects();  // objects with surveys
-  Bills& bills();      // of quantities
+  Metadata& metadata();  // store/content/metadata.h
+  Objects& objects();    // objects with surveys
+  Bills& bills();        // of quantities
   SurfaceImages& surface_images();
   Layers& layers();
   Tables& tables();

@@ -11,6 +11,7 @@
 #include "store/content/comments.h"
 #include "store/content/jobs.h"
 #include "store/content/layers.h"
+#include "store/content/metadata.h"
 #include "store/content/models.h"
 #include "store/content/named_parts.h"
 #include "store/content/objects.h"
@@ -139,6 +140,7 @@ struct Store::Impl {
   Audit audit{pool};
   Projects projects{pool};
   Models models{pool, blobs};
+  Metadata metadata{pool};
   Objects objects{pool};
   Bills bills{pool};
   SurfaceImages images{pool, blobs};

@@ -151,6 +151,7 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_audit_routes(router_, context_);
   add_trash_routes(router_, context_);
   add_model_routes(router_, context_);
+  add_metadata_routes(router_, context_);
   add_object_routes(router_, context_);
   add_bill_routes(router_, context_);
   add_import_routes(router_, context_);

@@ -20,6 +20,7 @@ void add_activity_routes(Router& router, const RouteContext& context);
 void add_audit_routes(Router& router, const RouteContext& context);
 void add_trash_routes(Router& router, const RouteContext& context);
 void add_model_routes(Router& router, const RouteContext& context);
+void add_metadata_routes(Router& router, const RouteContext& context);
 void add_object_routes(Router& router, const RouteContext& context);
 void add_bill_routes(Router& router, const RouteContext& context);
 void add_import_routes(Router& router, const RouteContext& context);

@@ -13,7 +13,7 @@ nlohmann::json to_json(const jobs::JobStatus& job) {
                       {"message", job.message}};
   if (job.problem) json["problem"] = protocol::problem_body(*job.problem);
   if (!job.result) return json;
-  json["model"] = job.result->model;
+  if (job.result->model != ModelId(0)) json["model"] = job.result->model;
   if (!job.result->layers.empty()) json["layers"] = job.result->layers;
   if (job.result->image) json["look"] = *job.result->image;
   if (const auto& report = job.result->report; !report.is_null())

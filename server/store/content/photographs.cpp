@@ -20,8 +20,8 @@ constexpr std::size_t kCalibrationNumbers = 15, kPoseNumbers = 12;
 
 constexpr auto kPhotographs = sql(
     "SELECT p.id, p.model_id, p.name, p.lens, p.unit, p.calibrated_width, p.calibrated_height, "
-    "p.calibration, p.pose, p.version, p.media_type, b.bytes, encode(p.sha256, 'hex'), p.width, "
-    "p.height FROM photographs p LEFT JOIN blobs b USING (sha256) ");
+    "p.calibration, p.pose, p.version, p.rights_uri, p.rights_holder, p.media_type, b.bytes, "
+    "encode(p.sha256, 'hex'), p.width, p.height FROM photographs p LEFT JOIN blobs b USING (sha256) ");
 
 // Of a model, whose names contain a text, with an image ($3) or without one ($4). The names sort by
 // their bytes (collation "C"), where lower() would only know the letters of ASCII.
@@ -80,6 +80,8 @@ Photograph read_photograph(const PgResult& rows, int i) {
   photograph.posed.calibration = read_calibration(row);
   photograph.posed.pose = read_pose(row);
   photograph.version = row.integer();
+  photograph.rights_uri = row.text();
+  photograph.rights_holder = row.text();
   if (auto media_type = row.optional_text()) {
     Original original;
     original.media_type = std::move(*media_type);
@@ -305,6 +307,29 @@ Result<Photograph> Photographs::set_original(ModelId model_id, PhotographId id,
             .integer(original.height)));
     STRATA_TRY(drop_contents(connection, former));
     return find_one(connection, model_id, id);
+  };
+  return change(pool_, answer, work, kBulkLimits);
+}
+
+Result<std::int64_t> Photographs::set_rights(ModelId model_id, std::span<const PhotographId> ids,
+                                             const std::string& rights_uri,
+                                             const std::string& rights_holder,
+                                             const IdempotentResponse<std::int64_t>& answer) {
+  STRATA_TRY(check_text(rights_uri, "rights_uri"));
+  STRATA_TRY(check_text(rights_holder, "rights_holder"));
+  PgArray chosen(oid::kInt8);
+  for (const PhotographId id : ids) chosen.add(id.number());
+  const auto work = [&](PgConnection& connection) -> Result<std::int64_t> {
+    const auto rows = STRATA_TRY(connection.query(
+        "UPDATE photographs SET rights_uri = $3, rights_holder = $4, version = version + 1 "
+        "WHERE model_id = $1 AND (id = any($2) OR $5) RETURNING 1",
+        Params()
+            .id(model_id)
+            .array(chosen)
+            .text(rights_uri)
+            .text(rights_holder)
+            .boolean(ids.empty())));
+    return std::int64_t{rows.rows()};
   };
   return change(pool_, answer, work, kBulkLimits);
 }

@@ -40,6 +40,7 @@ struct Photograph {
   ModelId model_id = 0;
   photo::PosedPhotograph posed;  // in world coordinates of the model
   std::optional<Original> original;
+  std::string rights_uri, rights_holder;  // empty: those of the model
   std::int64_t version = 1;
 };
 
@@ -86,6 +87,12 @@ class Photographs {
   // error if the site has a node whose program does not know photographs.
   Result<Photograph> set_original(ModelId model_id, PhotographId id, const NewOriginal& original,
                                   const IdempotentResponse<Photograph>& answer = {});
+
+  // Sets the license and the rights holder of the photographs with these ids, or of all photographs
+  // of the model if `ids` is empty. Returns the number of changed photographs.
+  Result<std::int64_t> set_rights(ModelId model_id, std::span<const PhotographId> ids,
+                                  const std::string& rights_uri, const std::string& rights_holder,
+                                  const IdempotentResponse<std::int64_t>& answer = {});
 
   Result<void> remove(ModelId model_id, PhotographId id, const IdempotentResponse<>& answer = {});
   Result<void> remove_all(ModelId model_id, const IdempotentResponse<>& answer = {});

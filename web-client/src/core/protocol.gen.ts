@@ -2112,6 +2112,139 @@ export interface BillQuantities {
   total: string;
 }
 
+/** Language (BCP 47). */
+export type MetadataLanguage = string;
+
+/** Web address or other URI. */
+export type MetadataUri = string;
+
+/** Title. */
+export interface DepositTitle {
+  title: string;
+  /** Default: "main". */
+  kind?: "main" | "alternative" | "subtitle" | "translated";
+  language?: MetadataLanguage;
+}
+
+/** Organization. */
+export interface DepositAffiliation {
+  name: string;
+  /** Identifier of the Research Organization Registry, such as https://ror.org/04wxnsj81. The server checks its check digits. */
+  ror?: string;
+}
+
+/** Person or organization. */
+export interface DepositAgent {
+  /** Default: "person". */
+  kind?: "person" | "organization";
+  /** Name of a person as `Family name, given names`, or name of an organization. */
+  name: string;
+  /** ORCID iD of a person, such as 0000-0002-1825-0097. The server checks its check digit. */
+  orcid?: string;
+  /** ROR identifier of an organization. */
+  ror?: string;
+  affiliations?: DepositAffiliation[];
+}
+
+/** Kind of contribution (DataCite contributorType). */
+export type DepositContribution = "contact_person" | "data_collector" | "data_curator" | "data_manager" | "distributor" | "editor" | "hosting_institution" | "producer" | "project_leader" | "project_manager" | "project_member" | "researcher" | "research_group" | "rights_holder" | "sponsor" | "supervisor" | "other";
+
+/** Contributor. */
+export interface DepositContributor {
+  agent: DepositAgent;
+  contribution: DepositContribution;
+}
+
+/** Subject. */
+export interface DepositSubject {
+  subject: string;
+  /** Vocabulary of the subject, such as AAT. */
+  scheme?: string;
+  uri?: MetadataUri;
+  language?: MetadataLanguage;
+}
+
+/** Date. */
+export interface DepositDate {
+  /** Year, month, day or period (EDTF), such as 2024-05/2024-07. */
+  date: string;
+  kind: "accepted" | "available" | "collected" | "copyrighted" | "coverage" | "created" | "issued" | "submitted" | "updated" | "valid" | "withdrawn" | "other";
+  information?: string;
+}
+
+/** Description. */
+export interface DepositDescription {
+  text: string;
+  /** Default: "abstract". */
+  kind?: "abstract" | "methods" | "technical_info" | "table_of_contents" | "other";
+  language?: MetadataLanguage;
+}
+
+/** License or statement of rights. A license with its SPDX identifier, or a statement with its address, such as one of rightsstatements.org. */
+export interface DepositRights {
+  /** SPDX identifier, such as CC-BY-4.0. The server adds the name and the address. */
+  license?: string;
+  uri?: MetadataUri;
+  text?: string;
+}
+
+/** Relation to another resource (DataCite relationType). */
+export type DepositRelation = "cites" | "is_cited_by" | "continues" | "is_continued_by" | "describes" | "is_described_by" | "is_version_of" | "has_version" | "is_new_version_of" | "is_previous_version_of" | "is_part_of" | "has_part" | "references" | "is_referenced_by" | "documents" | "is_documented_by" | "is_derived_from" | "is_source_of" | "is_supplement_to" | "is_supplemented_by" | "is_identical_to";
+
+/** Related resource. */
+export interface DepositRelated {
+  identifier: string;
+  kind: "doi" | "url" | "handle" | "isbn" | "issn" | "ark" | "urn" | "arxiv";
+  relation: DepositRelation;
+}
+
+/** Funding. */
+export interface DepositFunding {
+  funder: DepositAffiliation;
+  award_number?: string;
+  award_uri?: MetadataUri;
+  award_title?: string;
+}
+
+/** Place. Coordinates are in degrees (WGS 84). A point has both coordinates. */
+export interface DepositPlace {
+  name?: string;
+  longitude?: number;
+  latitude?: number;
+}
+
+/** Metadata of a project for a repository (DataCite 4.5). All members are optional, so a user can save a draft. `missing` of the response lists what a DOI needs. */
+export interface DepositRecord {
+  /** DOI that the repository has assigned, such as 10.5281/zenodo.1234567. */
+  doi?: string;
+  titles?: DepositTitle[];
+  creators?: DepositAgent[];
+  contributors?: DepositContributor[];
+  publisher?: DepositAffiliation;
+  /** Year of publication. */
+  year?: number;
+  /** Type of the resource in words. The general type is `Dataset`. */
+  resource_type?: string;
+  version?: string;
+  language?: MetadataLanguage;
+  subjects?: DepositSubject[];
+  dates?: DepositDate[];
+  descriptions?: DepositDescription[];
+  rights?: DepositRights[];
+  related?: DepositRelated[];
+  funding?: DepositFunding[];
+  places?: DepositPlace[];
+}
+
+/** Metadata of a project, as stored. */
+export interface DepositMetadata {
+  record: DepositRecord;
+  /** Members of `record` that a DOI needs and that are not set. */
+  missing: string[];
+  /** 0: nothing was saved yet. `record` then contains values that the server proposes. */
+  version: number;
+}
+
 /** Layer that a step of an analysis read. */
 export interface AnalysisInput {
   /** Id of the layer. */
@@ -3099,6 +3232,23 @@ export interface Photograph {
   media_type?: string;
   /** Size of the original. Absent without an image. */
   bytes?: number;
+  /** License or statement of rights, as an SPDX identifier or an address. Absent if it is the one of the model. */
+  rights_uri?: string;
+  rights_holder?: string;
+}
+
+/** Rights of photographs. */
+export interface PhotographRights {
+  /** An SPDX identifier such as CC-BY-4.0, or an address. Empty: the license of the model. */
+  rights_uri: string;
+  rights_holder: string;
+  /** Ids. Default: all photographs of the model. */
+  photographs?: number[];
+}
+
+/** Effect on photographs. */
+export interface PhotographRightsReport {
+  changed: number;
 }
 
 /** Photographs of a model, sorted by name. */

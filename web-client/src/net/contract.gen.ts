@@ -1426,6 +1426,25 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/models/{model}/photographs/rights": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        /** Set the license and the rights holder of photographs */
+        put: operations["set_photograph_rights"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/models/{model}/photographs/seeing": {
         parameters: {
             query?: never;
@@ -2250,6 +2269,44 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/projects/{project}/citation": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        /** Get the citation of a project, or its metadata in a format of repositories */
+        get: operations["get_citation"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/projects/{project}/deposits": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Make a deposit of a project for a repository */
+        post: operations["make_deposit"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/projects/{project}/groups/{group}": {
         parameters: {
             query?: never;
@@ -2306,6 +2363,26 @@ export interface paths {
         post?: never;
         /** Remove a user's role in a project */
         delete: operations["remove_member"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/projects/{project}/metadata": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        /** Get the metadata of a project for a repository */
+        get: operations["get_metadata"];
+        /** Save the metadata of a project for a repository */
+        put: operations["replace_metadata"];
+        post?: never;
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -3096,6 +3173,42 @@ export interface components {
         CrossTable: wire.CrossTable;
         /** Request to compare two layers */
         CrossTableRequest: wire.CrossTableRequest;
+        /** Organization */
+        DepositAffiliation: wire.DepositAffiliation;
+        /** Person or organization */
+        DepositAgent: wire.DepositAgent;
+        /**
+         * Kind of contribution (DataCite contributorType)
+         * @enum {string}
+         */
+        DepositContribution: wire.DepositContribution;
+        /** Contributor */
+        DepositContributor: wire.DepositContributor;
+        /** Date */
+        DepositDate: wire.DepositDate;
+        /** Description */
+        DepositDescription: wire.DepositDescription;
+        /** Funding */
+        DepositFunding: wire.DepositFunding;
+        /** Metadata of a project, as stored */
+        DepositMetadata: wire.DepositMetadata;
+        /** Place */
+        DepositPlace: wire.DepositPlace;
+        /** Metadata of a project for a repository (DataCite 4.5) */
+        DepositRecord: wire.DepositRecord;
+        /** Related resource */
+        DepositRelated: wire.DepositRelated;
+        /**
+         * Relation to another resource (DataCite relationType)
+         * @enum {string}
+         */
+        DepositRelation: wire.DepositRelation;
+        /** License or statement of rights */
+        DepositRights: wire.DepositRights;
+        /** Subject */
+        DepositSubject: wire.DepositSubject;
+        /** Title */
+        DepositTitle: wire.DepositTitle;
         /** Fixed depth bias */
         DepthBias: wire.DepthBias;
         /** Descriptions by language */
@@ -3310,6 +3423,10 @@ export interface components {
         MemberPut: wire.MemberPut;
         /** Changes to your own account */
         MePatch: wire.MePatch;
+        /** Language (BCP 47) */
+        MetadataLanguage: wire.MetadataLanguage;
+        /** Web address or other URI */
+        MetadataUri: wire.MetadataUri;
         /** Model */
         Model: wire.Model;
         /** Area of one key on one model */
@@ -3372,6 +3489,10 @@ export interface components {
         Photograph: wire.Photograph;
         /** Photographs of a model, sorted by name */
         PhotographList: wire.PhotographList;
+        /** Rights of photographs */
+        PhotographRights: wire.PhotographRights;
+        /** Effect on photographs */
+        PhotographRightsReport: wire.PhotographRightsReport;
         /** Photographs that see a place, best first */
         PhotographsSeeing: wire.PhotographsSeeing;
         /** Photographs that see a place */
@@ -6979,6 +7100,33 @@ export interface operations {
             };
         };
     };
+    set_photograph_rights: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                model: components["parameters"]["model"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PhotographRights"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PhotographRightsReport"];
+                };
+            };
+        };
+    };
     photographs_seeing: {
         parameters: {
             query?: never;
@@ -8555,6 +8703,58 @@ export interface operations {
             };
         };
     };
+    get_citation: {
+        parameters: {
+            query?: {
+                f?: "text" | "bibtex" | "ris" | "csl" | "datacite" | "datacite-xml" | "jsonld";
+            };
+            header?: never;
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/ld+json": Record<string, never>;
+                    "application/vnd.citationstyles.csl+json": Record<string, never>[];
+                    "application/vnd.datacite.datacite+json": Record<string, never>;
+                    "application/vnd.datacite.datacite+xml": string;
+                    "application/x-bibtex": string;
+                    "application/x-research-info-systems": string;
+                    "text/plain": string;
+                };
+            };
+        };
+    };
+    make_deposit: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+            };
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Job"];
+                };
+            };
+        };
+    };
     put_project_group: {
         parameters: {
             query?: never;
@@ -8671,6 +8871,57 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+        };
+    };
+    get_metadata: {
+        parameters: {
+            query?: never;
+            header?: {
+                "If-None-Match"?: components["parameters"]["if_none_match"];
+            };
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DepositMetadata"];
+                };
+            };
+        };
+    };
+    replace_metadata: {
+        parameters: {
+            query?: never;
+            header?: {
+                "Idempotency-Key"?: components["parameters"]["idempotency_key"];
+                "If-Match"?: components["parameters"]["if_match"];
+            };
+            path: {
+                project: components["parameters"]["project"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DepositRecord"];
+            };
+        };
+        responses: {
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DepositMetadata"];
+                };
             };
         };
     };

@@ -845,6 +845,228 @@ void read(const nlohmann::json& json, BillItemKind& value) {
 
 nlohmann::json to_json(const BillItemKind& value) { return name(value); }
 
+std::string_view name(DepositTitleKind value) {
+  switch (value) {
+    case DepositTitleKind::main: return "main";
+    case DepositTitleKind::alternative: return "alternative";
+    case DepositTitleKind::subtitle: return "subtitle";
+    case DepositTitleKind::translated: return "translated";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, DepositTitleKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "main") value = DepositTitleKind::main;
+  if (text == "alternative") value = DepositTitleKind::alternative;
+  if (text == "subtitle") value = DepositTitleKind::subtitle;
+  if (text == "translated") value = DepositTitleKind::translated;
+}
+
+nlohmann::json to_json(const DepositTitleKind& value) { return name(value); }
+
+std::string_view name(DepositAgentKind value) {
+  switch (value) {
+    case DepositAgentKind::person: return "person";
+    case DepositAgentKind::organization: return "organization";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, DepositAgentKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "person") value = DepositAgentKind::person;
+  if (text == "organization") value = DepositAgentKind::organization;
+}
+
+nlohmann::json to_json(const DepositAgentKind& value) { return name(value); }
+
+std::string_view name(DepositContribution value) {
+  switch (value) {
+    case DepositContribution::contact_person: return "contact_person";
+    case DepositContribution::data_collector: return "data_collector";
+    case DepositContribution::data_curator: return "data_curator";
+    case DepositContribution::data_manager: return "data_manager";
+    case DepositContribution::distributor: return "distributor";
+    case DepositContribution::editor: return "editor";
+    case DepositContribution::hosting_institution: return "hosting_institution";
+    case DepositContribution::producer: return "producer";
+    case DepositContribution::project_leader: return "project_leader";
+    case DepositContribution::project_manager: return "project_manager";
+    case DepositContribution::project_member: return "project_member";
+    case DepositContribution::researcher: return "researcher";
+    case DepositContribution::research_group: return "research_group";
+    case DepositContribution::rights_holder: return "rights_holder";
+    case DepositContribution::sponsor: return "sponsor";
+    case DepositContribution::supervisor: return "supervisor";
+    case DepositContribution::other: return "other";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, DepositContribution& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "contact_person") value = DepositContribution::contact_person;
+  if (text == "data_collector") value = DepositContribution::data_collector;
+  if (text == "data_curator") value = DepositContribution::data_curator;
+  if (text == "data_manager") value = DepositContribution::data_manager;
+  if (text == "distributor") value = DepositContribution::distributor;
+  if (text == "editor") value = DepositContribution::editor;
+  if (text == "hosting_institution") value = DepositContribution::hosting_institution;
+  if (text == "producer") value = DepositContribution::producer;
+  if (text == "project_leader") value = DepositContribution::project_leader;
+  if (text == "project_manager") value = DepositContribution::project_manager;
+  if (text == "project_member") value = DepositContribution::project_member;
+  if (text == "researcher") value = DepositContribution::researcher;
+  if (text == "research_group") value = DepositContribution::research_group;
+  if (text == "rights_holder") value = DepositContribution::rights_holder;
+  if (text == "sponsor") value = DepositContribution::sponsor;
+  if (text == "supervisor") value = DepositContribution::supervisor;
+  if (text == "other") value = DepositContribution::other;
+}
+
+nlohmann::json to_json(const DepositContribution& value) { return name(value); }
+
+std::string_view name(DepositDateKind value) {
+  switch (value) {
+    case DepositDateKind::accepted: return "accepted";
+    case DepositDateKind::available: return "available";
+    case DepositDateKind::collected: return "collected";
+    case DepositDateKind::copyrighted: return "copyrighted";
+    case DepositDateKind::coverage: return "coverage";
+    case DepositDateKind::created: return "created";
+    case DepositDateKind::issued: return "issued";
+    case DepositDateKind::submitted: return "submitted";
+    case DepositDateKind::updated: return "updated";
+    case DepositDateKind::valid: return "valid";
+    case DepositDateKind::withdrawn: return "withdrawn";
+    case DepositDateKind::other: return "other";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, DepositDateKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "accepted") value = DepositDateKind::accepted;
+  if (text == "available") value = DepositDateKind::available;
+  if (text == "collected") value = DepositDateKind::collected;
+  if (text == "copyrighted") value = DepositDateKind::copyrighted;
+  if (text == "coverage") value = DepositDateKind::coverage;
+  if (text == "created") value = DepositDateKind::created;
+  if (text == "issued") value = DepositDateKind::issued;
+  if (text == "submitted") value = DepositDateKind::submitted;
+  if (text == "updated") value = DepositDateKind::updated;
+  if (text == "valid") value = DepositDateKind::valid;
+  if (text == "withdrawn") value = DepositDateKind::withdrawn;
+  if (text == "other") value = DepositDateKind::other;
+}
+
+nlohmann::json to_json(const DepositDateKind& value) { return name(value); }
+
+std::string_view name(DepositDescriptionKind value) {
+  switch (value) {
+    case DepositDescriptionKind::abstract: return "abstract";
+    case DepositDescriptionKind::methods: return "methods";
+    case DepositDescriptionKind::technical_info: return "technical_info";
+    case DepositDescriptionKind::table_of_contents: return "table_of_contents";
+    case DepositDescriptionKind::other: return "other";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, DepositDescriptionKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "abstract") value = DepositDescriptionKind::abstract;
+  if (text == "methods") value = DepositDescriptionKind::methods;
+  if (text == "technical_info") value = DepositDescriptionKind::technical_info;
+  if (text == "table_of_contents") value = DepositDescriptionKind::table_of_contents;
+  if (text == "other") value = DepositDescriptionKind::other;
+}
+
+nlohmann::json to_json(const DepositDescriptionKind& value) { return name(value); }
+
+std::string_view name(DepositRelation value) {
+  switch (value) {
+    case DepositRelation::cites: return "cites";
+    case DepositRelation::is_cited_by: return "is_cited_by";
+    case DepositRelation::continues: return "continues";
+    case DepositRelation::is_continued_by: return "is_continued_by";
+    case DepositRelation::describes: return "describes";
+    case DepositRelation::is_described_by: return "is_described_by";
+    case DepositRelation::is_version_of: return "is_version_of";
+    case DepositRelation::has_version: return "has_version";
+    case DepositRelation::is_new_version_of: return "is_new_version_of";
+    case DepositRelation::is_previous_version_of: return "is_previous_version_of";
+    case DepositRelation::is_part_of: return "is_part_of";
+    case DepositRelation::has_part: return "has_part";
+    case DepositRelation::references: return "references";
+    case DepositRelation::is_referenced_by: return "is_referenced_by";
+    case DepositRelation::documents: return "documents";
+    case DepositRelation::is_documented_by: return "is_documented_by";
+    case DepositRelation::is_derived_from: return "is_derived_from";
+    case DepositRelation::is_source_of: return "is_source_of";
+    case DepositRelation::is_supplement_to: return "is_supplement_to";
+    case DepositRelation::is_supplemented_by: return "is_supplemented_by";
+    case DepositRelation::is_identical_to: return "is_identical_to";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, DepositRelation& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "cites") value = DepositRelation::cites;
+  if (text == "is_cited_by") value = DepositRelation::is_cited_by;
+  if (text == "continues") value = DepositRelation::continues;
+  if (text == "is_continued_by") value = DepositRelation::is_continued_by;
+  if (text == "describes") value = DepositRelation::describes;
+  if (text == "is_described_by") value = DepositRelation::is_described_by;
+  if (text == "is_version_of") value = DepositRelation::is_version_of;
+  if (text == "has_version") value = DepositRelation::has_version;
+  if (text == "is_new_version_of") value = DepositRelation::is_new_version_of;
+  if (text == "is_previous_version_of") value = DepositRelation::is_previous_version_of;
+  if (text == "is_part_of") value = DepositRelation::is_part_of;
+  if (text == "has_part") value = DepositRelation::has_part;
+  if (text == "references") value = DepositRelation::references;
+  if (text == "is_referenced_by") value = DepositRelation::is_referenced_by;
+  if (text == "documents") value = DepositRelation::documents;
+  if (text == "is_documented_by") value = DepositRelation::is_documented_by;
+  if (text == "is_derived_from") value = DepositRelation::is_derived_from;
+  if (text == "is_source_of") value = DepositRelation::is_source_of;
+  if (text == "is_supplement_to") value = DepositRelation::is_supplement_to;
+  if (text == "is_supplemented_by") value = DepositRelation::is_supplemented_by;
+  if (text == "is_identical_to") value = DepositRelation::is_identical_to;
+}
+
+nlohmann::json to_json(const DepositRelation& value) { return name(value); }
+
+std::string_view name(DepositRelatedKind value) {
+  switch (value) {
+    case DepositRelatedKind::doi: return "doi";
+    case DepositRelatedKind::url: return "url";
+    case DepositRelatedKind::handle: return "handle";
+    case DepositRelatedKind::isbn: return "isbn";
+    case DepositRelatedKind::issn: return "issn";
+    case DepositRelatedKind::ark: return "ark";
+    case DepositRelatedKind::urn: return "urn";
+    case DepositRelatedKind::arxiv: return "arxiv";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, DepositRelatedKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "doi") value = DepositRelatedKind::doi;
+  if (text == "url") value = DepositRelatedKind::url;
+  if (text == "handle") value = DepositRelatedKind::handle;
+  if (text == "isbn") value = DepositRelatedKind::isbn;
+  if (text == "issn") value = DepositRelatedKind::issn;
+  if (text == "ark") value = DepositRelatedKind::ark;
+  if (text == "urn") value = DepositRelatedKind::urn;
+  if (text == "arxiv") value = DepositRelatedKind::arxiv;
+}
+
+nlohmann::json to_json(const DepositRelatedKind& value) { return name(value); }
+
 std::string_view name(RegionOperation value) {
   switch (value) {
     case RegionOperation::sieve: return "sieve";
@@ -3022,6 +3244,204 @@ nlohmann::json to_json(const BillWrite& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, DepositTitle& value) {
+  read_member(json, "title", value.title);
+  read_optional_member(json, "kind", value.kind);
+  read_optional_member(json, "language", value.language);
+}
+
+nlohmann::json to_json(const DepositTitle& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "title", value.title);
+  write_member(json, "kind", value.kind);
+  write_optional_member(json, "language", value.language);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositAffiliation& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "ror", value.ror);
+}
+
+nlohmann::json to_json(const DepositAffiliation& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "ror", value.ror);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositAgent& value) {
+  read_optional_member(json, "kind", value.kind);
+  read_member(json, "name", value.name);
+  read_optional_member(json, "orcid", value.orcid);
+  read_optional_member(json, "ror", value.ror);
+  read_optional_member(json, "affiliations", value.affiliations);
+}
+
+nlohmann::json to_json(const DepositAgent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "kind", value.kind);
+  write_member(json, "name", value.name);
+  write_optional_member(json, "orcid", value.orcid);
+  write_optional_member(json, "ror", value.ror);
+  write_optional_member(json, "affiliations", value.affiliations);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositContributor& value) {
+  read_member(json, "agent", value.agent);
+  read_member(json, "contribution", value.contribution);
+}
+
+nlohmann::json to_json(const DepositContributor& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "agent", value.agent);
+  write_member(json, "contribution", value.contribution);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositSubject& value) {
+  read_member(json, "subject", value.subject);
+  read_optional_member(json, "scheme", value.scheme);
+  read_optional_member(json, "uri", value.uri);
+  read_optional_member(json, "language", value.language);
+}
+
+nlohmann::json to_json(const DepositSubject& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "subject", value.subject);
+  write_optional_member(json, "scheme", value.scheme);
+  write_optional_member(json, "uri", value.uri);
+  write_optional_member(json, "language", value.language);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositDate& value) {
+  read_member(json, "date", value.date);
+  read_member(json, "kind", value.kind);
+  read_optional_member(json, "information", value.information);
+}
+
+nlohmann::json to_json(const DepositDate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "date", value.date);
+  write_member(json, "kind", value.kind);
+  write_optional_member(json, "information", value.information);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositDescription& value) {
+  read_member(json, "text", value.text);
+  read_optional_member(json, "kind", value.kind);
+  read_optional_member(json, "language", value.language);
+}
+
+nlohmann::json to_json(const DepositDescription& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "text", value.text);
+  write_member(json, "kind", value.kind);
+  write_optional_member(json, "language", value.language);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositRights& value) {
+  read_optional_member(json, "license", value.license);
+  read_optional_member(json, "uri", value.uri);
+  read_optional_member(json, "text", value.text);
+}
+
+nlohmann::json to_json(const DepositRights& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "license", value.license);
+  write_optional_member(json, "uri", value.uri);
+  write_optional_member(json, "text", value.text);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositRelated& value) {
+  read_member(json, "identifier", value.identifier);
+  read_member(json, "kind", value.kind);
+  read_member(json, "relation", value.relation);
+}
+
+nlohmann::json to_json(const DepositRelated& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "identifier", value.identifier);
+  write_member(json, "kind", value.kind);
+  write_member(json, "relation", value.relation);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositFunding& value) {
+  read_member(json, "funder", value.funder);
+  read_optional_member(json, "award_number", value.award_number);
+  read_optional_member(json, "award_uri", value.award_uri);
+  read_optional_member(json, "award_title", value.award_title);
+}
+
+nlohmann::json to_json(const DepositFunding& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "funder", value.funder);
+  write_optional_member(json, "award_number", value.award_number);
+  write_optional_member(json, "award_uri", value.award_uri);
+  write_optional_member(json, "award_title", value.award_title);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositPlace& value) {
+  read_optional_member(json, "name", value.name);
+  read_optional_member(json, "longitude", value.longitude);
+  read_optional_member(json, "latitude", value.latitude);
+}
+
+nlohmann::json to_json(const DepositPlace& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "name", value.name);
+  write_optional_member(json, "longitude", value.longitude);
+  write_optional_member(json, "latitude", value.latitude);
+  return json;
+}
+
+void read(const nlohmann::json& json, DepositRecord& value) {
+  read_optional_member(json, "doi", value.doi);
+  read_optional_member(json, "titles", value.titles);
+  read_optional_member(json, "creators", value.creators);
+  read_optional_member(json, "contributors", value.contributors);
+  read_optional_member(json, "publisher", value.publisher);
+  read_optional_member(json, "year", value.year);
+  read_optional_member(json, "resource_type", value.resource_type);
+  read_optional_member(json, "version", value.version);
+  read_optional_member(json, "language", value.language);
+  read_optional_member(json, "subjects", value.subjects);
+  read_optional_member(json, "dates", value.dates);
+  read_optional_member(json, "descriptions", value.descriptions);
+  read_optional_member(json, "rights", value.rights);
+  read_optional_member(json, "related", value.related);
+  read_optional_member(json, "funding", value.funding);
+  read_optional_member(json, "places", value.places);
+}
+
+nlohmann::json to_json(const DepositRecord& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "doi", value.doi);
+  write_optional_member(json, "titles", value.titles);
+  write_optional_member(json, "creators", value.creators);
+  write_optional_member(json, "contributors", value.contributors);
+  write_optional_member(json, "publisher", value.publisher);
+  write_optional_member(json, "year", value.year);
+  write_optional_member(json, "resource_type", value.resource_type);
+  write_optional_member(json, "version", value.version);
+  write_optional_member(json, "language", value.language);
+  write_optional_member(json, "subjects", value.subjects);
+  write_optional_member(json, "dates", value.dates);
+  write_optional_member(json, "descriptions", value.descriptions);
+  write_optional_member(json, "rights", value.rights);
+  write_optional_member(json, "related", value.related);
+  write_optional_member(json, "funding", value.funding);
+  write_optional_member(json, "places", value.places);
+  return json;
+}
+
 void read(const nlohmann::json& json, HistogramBin& value) {
   read_member(json, "from", value.from);
   read_member(json, "to", value.to);
@@ -3852,6 +4272,8 @@ void read(const nlohmann::json& json, Photograph& value) {
   read_member(json, "has_picture", value.has_picture);
   read_optional_member(json, "media_type", value.media_type);
   read_optional_member(json, "bytes", value.bytes);
+  read_optional_member(json, "rights_uri", value.rights_uri);
+  read_optional_member(json, "rights_holder", value.rights_holder);
 }
 
 nlohmann::json to_json(const Photograph& value) {
@@ -3865,12 +4287,28 @@ nlohmann::json to_json(const Photograph& value) {
   write_member(json, "has_picture", value.has_picture);
   write_optional_member(json, "media_type", value.media_type);
   write_optional_member(json, "bytes", value.bytes);
+  write_optional_member(json, "rights_uri", value.rights_uri);
+  write_optional_member(json, "rights_holder", value.rights_holder);
   return json;
 }
 
 Result<void> check(const Photograph& value, const std::string& field) {
   if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
   return {};
+}
+
+void read(const nlohmann::json& json, PhotographRights& value) {
+  read_member(json, "rights_uri", value.rights_uri);
+  read_member(json, "rights_holder", value.rights_holder);
+  read_optional_member(json, "photographs", value.photographs);
+}
+
+nlohmann::json to_json(const PhotographRights& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "rights_uri", value.rights_uri);
+  write_member(json, "rights_holder", value.rights_holder);
+  write_optional_member(json, "photographs", value.photographs);
+  return json;
 }
 
 void read(const nlohmann::json& json, PhotographList& value) {

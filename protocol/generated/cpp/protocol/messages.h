@@ -249,6 +249,23 @@ enum class Schema {
   BillLine,
   BillPosition,
   BillQuantities,
+  MetadataLanguage,
+  MetadataUri,
+  DepositTitle,
+  DepositAffiliation,
+  DepositAgent,
+  DepositContribution,
+  DepositContributor,
+  DepositSubject,
+  DepositDate,
+  DepositDescription,
+  DepositRights,
+  DepositRelation,
+  DepositRelated,
+  DepositFunding,
+  DepositPlace,
+  DepositRecord,
+  DepositMetadata,
   Job,
   RegionOperation,
   CleanupReport,
@@ -319,6 +336,8 @@ enum class Schema {
   VertexPropertyName,
   LookList,
   Photograph,
+  PhotographRights,
+  PhotographRightsReport,
   PhotographList,
   RefusedPhotograph,
   PosesReport,
@@ -453,7 +472,7 @@ enum class Schema {
   UnrolledLine,
   Unrolled,
 };
-constexpr int kSchemaCount = 427;
+constexpr int kSchemaCount = 446;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -2094,6 +2113,208 @@ nlohmann::json to_json(const BillWrite& value);
 template <>
 inline constexpr Schema kSchemaOf<BillWrite> = Schema::BillWrite;
 
+enum class DepositTitleKind { main, alternative, subtitle, translated };
+std::string_view name(DepositTitleKind value);
+void read(const nlohmann::json& json, DepositTitleKind& value);
+nlohmann::json to_json(const DepositTitleKind& value);
+
+// Title.
+struct DepositTitle {
+  std::string title;
+  DepositTitleKind kind = DepositTitleKind::main;
+  std::optional<std::string> language;
+  bool operator==(const DepositTitle&) const = default;
+};
+void read(const nlohmann::json& json, DepositTitle& value);
+nlohmann::json to_json(const DepositTitle& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositTitle> = Schema::DepositTitle;
+
+// Organization.
+struct DepositAffiliation {
+  std::string name;
+  // Identifier of the Research Organization Registry, such as https://ror.org/04wxnsj81. The server
+  // checks its check digits.
+  std::optional<std::string> ror;
+  bool operator==(const DepositAffiliation&) const = default;
+};
+void read(const nlohmann::json& json, DepositAffiliation& value);
+nlohmann::json to_json(const DepositAffiliation& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositAffiliation> = Schema::DepositAffiliation;
+
+enum class DepositAgentKind { person, organization };
+std::string_view name(DepositAgentKind value);
+void read(const nlohmann::json& json, DepositAgentKind& value);
+nlohmann::json to_json(const DepositAgentKind& value);
+
+// Person or organization.
+struct DepositAgent {
+  DepositAgentKind kind = DepositAgentKind::person;
+  std::string name;  // Name of a person as `Family name, given names`, or name of an organization.
+  // ORCID iD of a person, such as 0000-0002-1825-0097. The server checks its check digit.
+  std::optional<std::string> orcid;
+  std::optional<std::string> ror;  // ROR identifier of an organization.
+  std::optional<std::vector<DepositAffiliation>> affiliations;
+  bool operator==(const DepositAgent&) const = default;
+};
+void read(const nlohmann::json& json, DepositAgent& value);
+nlohmann::json to_json(const DepositAgent& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositAgent> = Schema::DepositAgent;
+
+// Kind of contribution (DataCite contributorType).
+enum class DepositContribution { contact_person, data_collector, data_curator, data_manager, distributor, editor, hosting_institution, producer, project_leader, project_manager, project_member, researcher, research_group, rights_holder, sponsor, supervisor, other };
+std::string_view name(DepositContribution value);
+void read(const nlohmann::json& json, DepositContribution& value);
+nlohmann::json to_json(const DepositContribution& value);
+
+// Contributor.
+struct DepositContributor {
+  DepositAgent agent;
+  DepositContribution contribution{};
+  bool operator==(const DepositContributor&) const = default;
+};
+void read(const nlohmann::json& json, DepositContributor& value);
+nlohmann::json to_json(const DepositContributor& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositContributor> = Schema::DepositContributor;
+
+// Subject.
+struct DepositSubject {
+  std::string subject;
+  std::optional<std::string> scheme;  // Vocabulary of the subject, such as AAT.
+  std::optional<std::string> uri;
+  std::optional<std::string> language;
+  bool operator==(const DepositSubject&) const = default;
+};
+void read(const nlohmann::json& json, DepositSubject& value);
+nlohmann::json to_json(const DepositSubject& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositSubject> = Schema::DepositSubject;
+
+enum class DepositDateKind { accepted, available, collected, copyrighted, coverage, created, issued, submitted, updated, valid, withdrawn, other };
+std::string_view name(DepositDateKind value);
+void read(const nlohmann::json& json, DepositDateKind& value);
+nlohmann::json to_json(const DepositDateKind& value);
+
+// Date.
+struct DepositDate {
+  std::string date;  // Year, month, day or period (EDTF), such as 2024-05/2024-07.
+  DepositDateKind kind{};
+  std::optional<std::string> information;
+  bool operator==(const DepositDate&) const = default;
+};
+void read(const nlohmann::json& json, DepositDate& value);
+nlohmann::json to_json(const DepositDate& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositDate> = Schema::DepositDate;
+
+enum class DepositDescriptionKind { abstract, methods, technical_info, table_of_contents, other };
+std::string_view name(DepositDescriptionKind value);
+void read(const nlohmann::json& json, DepositDescriptionKind& value);
+nlohmann::json to_json(const DepositDescriptionKind& value);
+
+// Description.
+struct DepositDescription {
+  std::string text;
+  DepositDescriptionKind kind = DepositDescriptionKind::abstract;
+  std::optional<std::string> language;
+  bool operator==(const DepositDescription&) const = default;
+};
+void read(const nlohmann::json& json, DepositDescription& value);
+nlohmann::json to_json(const DepositDescription& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositDescription> = Schema::DepositDescription;
+
+// License or statement of rights. A license with its SPDX identifier, or a statement with its address, such as one of rightsstatements.org.
+struct DepositRights {
+  // SPDX identifier, such as CC-BY-4.0. The server adds the name and the address.
+  std::optional<std::string> license;
+  std::optional<std::string> uri;
+  std::optional<std::string> text;
+  bool operator==(const DepositRights&) const = default;
+};
+void read(const nlohmann::json& json, DepositRights& value);
+nlohmann::json to_json(const DepositRights& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositRights> = Schema::DepositRights;
+
+// Relation to another resource (DataCite relationType).
+enum class DepositRelation { cites, is_cited_by, continues, is_continued_by, describes, is_described_by, is_version_of, has_version, is_new_version_of, is_previous_version_of, is_part_of, has_part, references, is_referenced_by, documents, is_documented_by, is_derived_from, is_source_of, is_supplement_to, is_supplemented_by, is_identical_to };
+std::string_view name(DepositRelation value);
+void read(const nlohmann::json& json, DepositRelation& value);
+nlohmann::json to_json(const DepositRelation& value);
+
+enum class DepositRelatedKind { doi, url, handle, isbn, issn, ark, urn, arxiv };
+std::string_view name(DepositRelatedKind value);
+void read(const nlohmann::json& json, DepositRelatedKind& value);
+nlohmann::json to_json(const DepositRelatedKind& value);
+
+// Related resource.
+struct DepositRelated {
+  std::string identifier;
+  DepositRelatedKind kind{};
+  DepositRelation relation{};
+  bool operator==(const DepositRelated&) const = default;
+};
+void read(const nlohmann::json& json, DepositRelated& value);
+nlohmann::json to_json(const DepositRelated& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositRelated> = Schema::DepositRelated;
+
+// Funding.
+struct DepositFunding {
+  DepositAffiliation funder;
+  std::optional<std::string> award_number;
+  std::optional<std::string> award_uri;
+  std::optional<std::string> award_title;
+  bool operator==(const DepositFunding&) const = default;
+};
+void read(const nlohmann::json& json, DepositFunding& value);
+nlohmann::json to_json(const DepositFunding& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositFunding> = Schema::DepositFunding;
+
+// Place. Coordinates are in degrees (WGS 84). A point has both coordinates.
+struct DepositPlace {
+  std::optional<std::string> name;
+  std::optional<double> longitude;
+  std::optional<double> latitude;
+  bool operator==(const DepositPlace&) const = default;
+};
+void read(const nlohmann::json& json, DepositPlace& value);
+nlohmann::json to_json(const DepositPlace& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositPlace> = Schema::DepositPlace;
+
+// Metadata of a project for a repository (DataCite 4.5). All members are optional, so a user can save a draft. `missing` of the response lists what a DOI needs.
+struct DepositRecord {
+  // DOI that the repository has assigned, such as 10.5281/zenodo.1234567.
+  std::optional<std::string> doi;
+  std::optional<std::vector<DepositTitle>> titles;
+  std::optional<std::vector<DepositAgent>> creators;
+  std::optional<std::vector<DepositContributor>> contributors;
+  std::optional<DepositAffiliation> publisher;
+  std::optional<int> year;  // Year of publication.
+  // Type of the resource in words. The general type is `Dataset`.
+  std::optional<std::string> resource_type;
+  std::optional<std::string> version;
+  std::optional<std::string> language;
+  std::optional<std::vector<DepositSubject>> subjects;
+  std::optional<std::vector<DepositDate>> dates;
+  std::optional<std::vector<DepositDescription>> descriptions;
+  std::optional<std::vector<DepositRights>> rights;
+  std::optional<std::vector<DepositRelated>> related;
+  std::optional<std::vector<DepositFunding>> funding;
+  std::optional<std::vector<DepositPlace>> places;
+  bool operator==(const DepositRecord&) const = default;
+};
+void read(const nlohmann::json& json, DepositRecord& value);
+nlohmann::json to_json(const DepositRecord& value);
+template <>
+inline constexpr Schema kSchemaOf<DepositRecord> = Schema::DepositRecord;
+
 // Bin of a histogram. Values from `from` (included) to `to` (excluded). The last bin includes `to`.
 struct HistogramBin {
   double from = 0;
@@ -2902,6 +3123,10 @@ struct Photograph {
   bool has_picture = false;
   std::optional<std::string> media_type;  // Media type of the original. Absent without an image.
   std::optional<std::int64_t> bytes;  // Size of the original. Absent without an image.
+  // License or statement of rights, as an SPDX identifier or an address. Absent if it is the one of
+  // the model.
+  std::optional<std::string> rights_uri;
+  std::optional<std::string> rights_holder;
   bool operator==(const Photograph&) const = default;
 };
 void read(const nlohmann::json& json, Photograph& value);
@@ -2909,6 +3134,20 @@ nlohmann::json to_json(const Photograph& value);
 Result<void> check(const Photograph& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Photograph> = Schema::Photograph;
+
+// Rights of photographs.
+struct PhotographRights {
+  // An SPDX identifier such as CC-BY-4.0, or an address. Empty: the license of the model.
+  std::string rights_uri;
+  std::string rights_holder;
+  // Ids. Default: all photographs of the model.
+  std::optional<std::vector<std::int64_t>> photographs;
+  bool operator==(const PhotographRights&) const = default;
+};
+void read(const nlohmann::json& json, PhotographRights& value);
+nlohmann::json to_json(const PhotographRights& value);
+template <>
+inline constexpr Schema kSchemaOf<PhotographRights> = Schema::PhotographRights;
 
 // Photographs of a model, sorted by name.
 struct PhotographList {

@@ -5,6 +5,7 @@
 #include <glm/trigonometric.hpp>
 #include <string>
 
+#include "app/deposit/identifiers.h"
 #include "app/photographs/photograph_cameras.h"
 #include "app/photographs/pose_files.h"
 #include "app/photographs/undistort.h"
@@ -76,6 +77,8 @@ class Shown {
       shown.bytes = static_cast<std::int64_t>(original->bytes);
       shown.media_type = original->media_type;
     }
+    if (!photograph.rights_uri.empty()) shown.rights_uri = photograph.rights_uri;
+    if (!photograph.rights_holder.empty()) shown.rights_holder = photograph.rights_holder;
     return shown;
   }
 
@@ -396,6 +399,25 @@ Result<Response> delete_photograph(const RouteContext& context, const Request& r
   return empty_response(204);
 }
 
+Result<Response> set_rights(const RouteContext& context, const Request& request) {
+  const auto body = STRATA_TRY(body_of<protocol::PhotographRights>(request));
+  const auto model = STRATA_TRY(stored_model(context, request));
+  if (!body.rights_uri.empty() && !app::is_license(body.rights_uri))
+    return fail(ErrorCode::invalid, "Unknown license",
+                "Send an SPDX identifier such as CC-BY-4.0, or the address of a license or of a "
+                "statement of rightsstatements.org.",
+                "rights_uri");
+  std::vector<store::PhotographId> ids;
+  for (const auto id : body.photographs.value_or(std::vector<std::int64_t>{})) ids.emplace_back(id);
+  const auto answer = [](const std::int64_t& changed) {
+    return json_response({{"changed", changed}});
+  };
+  const auto changed = STRATA_TRY(
+      context.store.photographs().set_rights(model.id, ids, body.rights_uri, body.rights_holder,
+                                             idempotent_response<std::int64_t>(request, answer)));
+  return answer(changed);
+}
+
 Result<Response> delete_photographs(const RouteContext& context, const Request& request) {
   const auto model = STRATA_TRY(stored_model(context, request));
   STRATA_TRY(context.store.photographs().remove_all(
@@ -444,6 +466,13 @@ void add_photograph_routes(Router& router, const RouteContext& context) {
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
               .is_question = true});
+  router.add({.method = Method::put,
+              .pattern = all + "/rights",
+              .handler = handler(set_rights),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
   router.add({.method = Method::get, .pattern = one, .handler = handler(get_photograph)});
   router.add({.method = Method::remove,
               .pattern = one,

@@ -238,6 +238,13 @@ export class Site {
     await this.#undo();
     await server.json("POST", "/projects/site/objects", { name: "Wall" });
     await server.json("POST", "/projects/site/bills", { name: "Facade" });
+    await server.json("PUT", "/projects/site/metadata", {
+      titles: [{ title: "Survey of a wall" }],
+      creators: [{ name: "Muster, Ada" }],
+      publisher: { name: "Museum" },
+      year: 2026,
+      rights: [{ license: "CC-BY-4.0" }],
+    });
     await server.json("PATCH", "/models/wall", { object: 1, survey_date: "2019-05-01" });
     await server.json("POST", "/models/wall/layers", {
       name: "Risk",

@@ -396,6 +396,25 @@ export const particulars = {
     content: { "application/octet-stream": file("tender.x83", "letter.txt") },
   },
   delete_object: { path: { project: one("site"), ...spare("object", "1") } },
+  // The metadata of `site` stay complete, for make_deposit.
+  replace_metadata: {
+    path: { project: mostly("default") },
+    ...json({
+      by_schema: {
+        MetadataLanguage: one("en", "de-AT"),
+        MetadataUri: one("https://example.org/x", "urn:x"),
+        DepositRights: one({ license: "CC-BY-4.0" }, { text: "Ask us" }, { license: "none" }),
+        DepositDate: one({ date: "2024-05", kind: "created" }, { date: "soon", kind: "other" }),
+        DepositRelated: one({ identifier: "10.1000/182", kind: "doi", relation: "cites" }),
+      },
+      by_name: {
+        doi: one("10.5281/zenodo.1", "none at all"),
+        orcid: one("0000-0002-1825-0097", "0000-0002-1825-0098"),
+        ror: one("https://ror.org/04wxnsj81"),
+      },
+    }),
+  },
+  make_deposit: { path: { project: mostly("site") } },
   change_snapshot: { path: { model: one("wall"), ...spare("snapshot") } },
   change_view: { path: { model: one("wall"), ...spare("view", "west") } },
   change_comment: { path: spare("comment", "2") },
