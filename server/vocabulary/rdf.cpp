@@ -110,6 +110,19 @@ raptor_term* new_term(raptor_world* world, const std::string& name) {
 
 }  // namespace
 
+bool is_iri(std::string_view text) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos || colon == 0 || !is_letter(text.front())) return false;
+  for (const char c : text.substr(0, colon))
+    if (!is_letter(c) && !(c >= '0' && c <= '9') && c != '+' && c != '-' && c != '.') return false;
+  return is_utf8(text) && std::ranges::none_of(text, [](char c) {
+           const auto byte = static_cast<unsigned char>(c);
+           return byte <= ' ' || byte == 0x7f ||
+                  std::string_view("<>\"{}|\\^`").find(c) != std::string_view::npos;
+         });
+}
+
 Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
                       const std::function<bool(const Triple&)>& sink) {
   const char* name = syntax == RdfSyntax::turtle ? "Turtle" : "RDF/XML";

@@ -109,6 +109,14 @@ TEST(LinkedDocument, the_context_defines_what_the_published_one_lacks) {
   EXPECT_EQ(whole["id"], "@id");
 }
 
+TEST(Rdf, iris_have_a_scheme_and_no_forbidden_characters) {
+  for (const char* iri : {"https://a.example/x?y=1#z", "urn:uuid:1", "http://a.example/ä"})
+    EXPECT_TRUE(is_iri(iri)) << iri;
+  for (const char* text : {"", "a", ":a", "1a:b", "https://a.example/a b", "http://a/<b>", "a\nb:c",
+                           "http://a/\"", "/relative", "http://a/\xff"})
+    EXPECT_FALSE(is_iri(text)) << text;
+}
+
 TEST(LinkedDocument, turtle_is_read_back_as_the_same_triples) {
   const auto document = nlohmann::json::parse(R"({"id": "https://a.example/1", "type": "Thing",
     "name": ["quote \" and \\ and\nline", 0.25, {"@value": "Grüße", "@language": "de"}],

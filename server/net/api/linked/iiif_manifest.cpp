@@ -7,6 +7,7 @@
 #include "domain/layers/layer.h"
 #include "domain/scene/model.h"
 #include "net/api/linked/scene_frame.h"
+#include "vocabulary/rdf.h"
 
 namespace strata::net {
 namespace {
@@ -59,7 +60,7 @@ class Manifest {
     if (!model_.credit.empty())
       json["requiredStatement"] = {{"label", english("Attribution")},
                                    {"value", texts(model_.credit)}};
-    if (!model_.rights_uri.empty()) json["rights"] = model_.rights_uri;
+    if (is_iri(model_.rights_uri)) json["rights"] = model_.rights_uri;
     if (with_surface) json["items"].push_back(scene(views));
     for (const ManifestView& view : views) json["items"].push_back(canvas(view));
     return json;

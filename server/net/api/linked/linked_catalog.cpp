@@ -1,5 +1,7 @@
 #include "net/api/linked/linked_catalog.h"
 
+#include "vocabulary/rdf.h"
+
 namespace strata::net {
 namespace {
 
@@ -74,7 +76,7 @@ nlohmann::json linked_term(const LinkedAddresses& addresses, const Table& table,
     labels.push_back({{"@value", label}, {"@language", language}});
   if (!labels.empty()) json["preferred_label"] = std::move(labels);
   add_text(json, "definition", term.definition);
-  add_text(json, "exact_match", term.uri);
+  if (is_iri(term.uri)) json["exact_match"] = term.uri;
   if (listed.parent)
     json["broader"] = addresses.record(table.id, *listed.parent);
   else

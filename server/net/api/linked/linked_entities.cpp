@@ -6,6 +6,7 @@
 #include "domain/layers/layer.h"
 #include "domain/tables/column_value.h"
 #include "net/api/linked/linked_terms.h"
+#include "vocabulary/rdf.h"
 
 namespace strata::net {
 namespace {
@@ -109,7 +110,7 @@ nlohmann::json type_of(const LinkedAddresses& addresses, const RecordTerm& term)
   nlohmann::json type{{"id", addresses.record(*term.column->target, term.key)},
                       {"type", "Type"},
                       {"_label", term.label}};
-  if (!term.uri.empty()) type["equivalent"] = {{{"id", term.uri}, {"type", "Type"}}};
+  if (is_iri(term.uri)) type["equivalent"] = {{{"id", term.uri}, {"type", "Type"}}};
   return type;
 }
 

@@ -40,7 +40,7 @@ struct RecordSite {
 struct RecordTerm {
   const Column* column = nullptr;
   std::int64_t key = 0;
-  std::string label, uri;  // the uri may be empty
+  std::string label, uri;  // the uri may be empty or no IRI
 };
 
 // A record with all that the caller sees of it.

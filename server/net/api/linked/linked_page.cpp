@@ -3,20 +3,24 @@
 #include <algorithm>
 
 #include "core/text/markup.h"
+#include "vocabulary/rdf.h"
 
 namespace strata::net {
 namespace {
 
 constexpr std::size_t kMostShown = 300;  // bytes of a text, such as a geometry
 
+// Returns a link, and only the text for an address with another scheme, which may be unsafe.
 std::string link(const std::string& address, const std::string& text) {
+  if (!address.starts_with("http://") && !address.starts_with("https://"))
+    return escaped_markup(text);
   return "<a href=\"" + escaped_markup(address) + "\">" + escaped_markup(text) + "</a>";
 }
 
 std::string shown_text(const nlohmann::json& value) {
   if (!value.is_string()) return escaped_markup(value.dump());
   const auto& text = value.get_ref<const std::string&>();
-  if (text.starts_with("http://") || text.starts_with("https://")) return link(text, text);
+  if (is_iri(text)) return link(text, text);
   if (text.size() <= kMostShown) return escaped_markup(text);
   return "<details><summary>" + std::to_string(text.size()) + " characters</summary>" +
          escaped_markup(text) + "</details>";

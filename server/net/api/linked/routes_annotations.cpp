@@ -1,5 +1,6 @@
 // The annotations of a model: areas, lines and points of its layers, and comments.
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "app/layers/layer_features.h"
@@ -140,10 +141,13 @@ Result<Response> comments_page(const RouteContext& context, const Request& reque
   const LinkedAddresses addresses(context, request);
   const SceneFrame frame(model);
   nlohmann::json items = nlohmann::json::array();
-  for (const store::Comment& comment : found.comments)
-    if (!comment.deleted)
-      items.push_back(
-          comment_annotation(addresses, frame, comment, author_of(context, request, comment.user)));
+  std::map<std::string, std::string> authors;  // by user
+  for (const store::Comment& comment : found.comments) {
+    if (comment.deleted) continue;
+    const auto [author, is_new] = authors.try_emplace(comment.user);
+    if (is_new) author->second = author_of(context, request, comment.user);
+    items.push_back(comment_annotation(addresses, frame, comment, author->second));
+  }
   const auto layers = STRATA_TRY(context.store.layers().of_model(model.id, request.role()));
   return linked_response(
       context, request,
