@@ -13,6 +13,7 @@ import zipfile
 import numpy
 import pytest
 from support import bags
+from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.pictures import png
 from support.strata_server import StrataServer
@@ -157,7 +158,39 @@ def make_tables(server):
         )
 
 
+def make_tour(server, model):
+    view = {
+        "name": "West",
+        "camera": camera_from(model, (0, -0.2, 1)),
+        "layers": [{"layer": "shift", "opacity": 0.5, "visible": True}],
+        "light": {"mode": "museum"},
+    }
+    server.ok("POST", M + "/views", view)
+    tour = {
+        "name": "Round",
+        "languages": ["en"],
+        "idle_s": 60,
+        "stops": [
+            {
+                "view": "west",
+                "title": {"en": "Start"},
+                "attract_s": 5,
+                "transition_s": 1,
+                "layers": ["finds"],
+                "records": [{"table": "finds", "keys": [2], "columns": [{"column": "note"}]}],
+            }
+        ],
+    }
+    made = server.ok("POST", M + "/tours", tour)
+    picture = png(8, 8, lambda x, y: (x, y, 200))
+    file = server.ok("POST", M + "/tours/round/files?name=a.png", picture).json()["id"]
+    stops = made.json()["stops"]
+    stops[0]["media"] = [{"file": file, "alt": {"en": "A well"}}]
+    server.ok("PATCH", M + "/tours/round", {"stops": stops, "theme": {"logo": file}})
+
+
 def make_parts(server):
+    make_tour(server, server.get(M).json())
     poses = b"#name,x,y,alt,heading,pitch,roll,f\nnorth.png,50,50,300,0,0,0,35\n"
     server.ok("POST", M + "/photograph-poses?filename=poses.csv", poses)
     server.ok("POST", M + "/photographs?filename=north.png", png(24, 16, lambda x, y: (x, y, 9)))
@@ -346,6 +379,17 @@ def state_of(server, project):
     state["photographs"] = photographs
     images = server.get(at + "/looks").json()["looks"]
     state["images"] = [(i["name"], i["slug"], i["sha256"], i["visible"]) for i in images]
+    view = server.get(at + "/views/west").json()
+    shown = [(names[each["layer"]], each["opacity"]) for each in view["layers"]]
+    state["view"] = (view["name"], view["camera"], view["light"], shown)
+    tour = server.get(at + "/tours/round").json()
+    for stop in tour["stops"]:
+        for records in stop["records"]:
+            records["table"] = "finds"
+        for medium in stop["media"]:
+            medium["file"] = server.ok("GET", f"{at}/tours/round/files/{medium['file']}").body
+    logo = server.ok("GET", f"{at}/tours/round/files/{tour['theme']['logo']}").body
+    state["tour"] = (tour["name"], tour["languages"], tour["stops"], logo)
     comments = server.get(at + "/comments").json()["comments"]
     state["comments"] = [(c["text"], c["position"], names.get(c["layer"])) for c in comments]
     return state

@@ -17,6 +17,7 @@ import {
 import { toldSurveyDate } from "../domain/surveys";
 import { mayDownload, type Model, type Role } from "../core/types";
 import type { ModelSession } from "../session/model-session";
+import "../features/deposits/citation";
 import "../features/surveys/survey-fields";
 import "../ui/dialog";
 import { sharedStyles } from "../ui/styles";
@@ -104,6 +105,8 @@ export class StrataModelDetails extends LitElement {
               </dd>`
             : nothing
         }
+        <dt>${texts.deposit.citation}</dt>
+        <dd><strata-citation .api=${this.session.api} project=${model.project}></strata-citation></dd>
       </dl>
       ${
         this.correctable
@@ -113,9 +116,12 @@ export class StrataModelDetails extends LitElement {
       }
       ${
         this.correctable
-          ? html`<button slot="actions" @click=${() => this.dispatchEvent(new CustomEvent("correct"))}>
-            ${texts.model.correct_size}
-          </button>`
+          ? html`<button slot="actions" @click=${() => this.dispatchEvent(new CustomEvent("deposit"))}>
+              ${texts.deposit.open}
+            </button>
+            <button slot="actions" @click=${() => this.dispatchEvent(new CustomEvent("correct"))}>
+              ${texts.model.correct_size}
+            </button>`
           : nothing
       }
     </strata-dialog>`;

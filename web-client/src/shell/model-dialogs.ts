@@ -6,6 +6,7 @@ import "../features/layers/color-dialog";
 import "../features/tables/column-dialog";
 import "../features/tables/csv-dialog";
 import "../features/records/delete-record-dialog";
+import "../features/deposits/deposit-dialog";
 import "../features/exports/export-dialog";
 import "../features/figures/figure-dialog";
 import "../features/figures/rollout-dialog";

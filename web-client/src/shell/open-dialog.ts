@@ -26,7 +26,7 @@ export type OpenDialog =
   | SelectionRequest
   | Extract<TourRequest, { dialog: "kiosks" }>
   | { dialog: "photograph"; photograph: Photograph }
-  | { dialog: "scale" | "help" | "about" | "orthophoto" | "commands" | "changes" };
+  | { dialog: "scale" | "help" | "about" | "deposit" | "orthophoto" | "commands" | "changes" };
 
 /** The interface of the page for its commands and dialogs. */
 export interface PageHost {
@@ -153,6 +153,8 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
       return html`<strata-report-dialog .session=${session} @closed=${closed}></strata-report-dialog>`;
     case "export":
       return html`<strata-export-dialog .session=${session} @closed=${closed}></strata-export-dialog>`;
+    case "deposit":
+      return html`<strata-deposit-dialog .session=${session} @closed=${closed}></strata-deposit-dialog>`;
     case "gis":
       return html`<strata-gis-dialog .session=${session} @closed=${closed}></strata-gis-dialog>`;
     case "linked":
@@ -194,6 +196,7 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
             @download-for=${(event: CustomEvent<Model["source_download"]>) => host.sayWhoDownloads(event.detail)}
             @closed=${closed}
             @correct=${() => host.show({ dialog: "scale" })}
+            @deposit=${() => host.show({ dialog: "deposit" })}
           ></strata-about-sheet>`
         : nothing;
   }

@@ -39,10 +39,8 @@ Result<app::ProjectMetadata> metadata_for(const RouteContext& context, const Req
 Result<Response> get_metadata(const RouteContext& context, const Request& request) {
   const auto project = STRATA_TRY(stored_project(context, request));
   const auto metadata = STRATA_TRY(metadata_for(context, request, project));
-  Response response = json_response(metadata_json(metadata.record, metadata.version));
-  // A proposal changes with the project, and has no version of its own.
-  if (metadata.version == 0) return std::move(response.with("ETag", etag_of(0)));
-  return with_etag(std::move(response), request, metadata.version);
+  return with_etag(json_response(metadata_json(metadata.record, metadata.version)), request,
+                   metadata.version);
 }
 
 Result<Response> replace_metadata(const RouteContext& context, const Request& request) {

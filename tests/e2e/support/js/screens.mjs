@@ -910,6 +910,16 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     },
     { name: "about", start: () => open(button(w.model.details)), end: close_dialog },
     {
+      name: "deposit",
+      start: async () => {
+        await open(button(w.model.details));
+        await button(w.deposit.open).click();
+        await page.locator("strata-deposit-dialog dialog[open] [name=doi]").waitFor();
+      },
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
       name: "size",
       start: async () => {
         await open(button(w.model.details));
