@@ -62,6 +62,7 @@ const reference = [
   "computed-layers",
   "tables",
   "formats",
+  "sample-exports",
   "deposits",
   "settings",
   "http",

@@ -25,8 +25,8 @@ struct Triple {
 // with this base.
 inline constexpr std::string_view kRelativeBase = "http://relative.invalid/";
 
-// Returns whether a text is an absolute IRI (RFC 3987): a scheme, a colon, and no character that IRIs
-// cannot contain.
+// Returns whether a text is an absolute IRI (RFC 3987): a scheme, a colon, and no character that
+// IRIs cannot contain.
 bool is_iri(std::string_view text);
 
 // Reads a graph with libraptor2, triple by triple, until `sink` returns false. Never fetches or
