@@ -1528,13 +1528,6 @@ ALTER TABLE public.audit_log ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     CACHE 1
 );
 
-CREATE TABLE public.blob_chunks (
-    sha256 bytea NOT NULL,
-    chunk integer NOT NULL,
-    data bytea NOT NULL
-);
-ALTER TABLE ONLY public.blob_chunks ALTER COLUMN data SET STORAGE EXTERNAL;
-
 CREATE TABLE public.bills (
     id bigint NOT NULL,
     project_id bigint NOT NULL,
@@ -1555,6 +1548,13 @@ ALTER TABLE public.bills ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     NO MAXVALUE
     CACHE 1
 );
+
+CREATE TABLE public.blob_chunks (
+    sha256 bytea NOT NULL,
+    chunk integer NOT NULL,
+    data bytea NOT NULL
+);
+ALTER TABLE ONLY public.blob_chunks ALTER COLUMN data SET STORAGE EXTERNAL;
 
 CREATE TABLE public.blobs (
     sha256 bytea NOT NULL,
@@ -2228,11 +2228,11 @@ ALTER TABLE ONLY public.attachments
 ALTER TABLE ONLY public.audit_log
     ADD CONSTRAINT audit_log_pkey PRIMARY KEY (id);
 
-ALTER TABLE ONLY public.blob_chunks
-    ADD CONSTRAINT blob_chunks_pkey PRIMARY KEY (sha256, chunk);
-
 ALTER TABLE ONLY public.bills
     ADD CONSTRAINT bills_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.blob_chunks
+    ADD CONSTRAINT blob_chunks_pkey PRIMARY KEY (sha256, chunk);
 
 ALTER TABLE ONLY public.blobs
     ADD CONSTRAINT blobs_pkey PRIMARY KEY (sha256);
