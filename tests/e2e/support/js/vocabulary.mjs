@@ -351,7 +351,9 @@ export const particulars = {
     path: { collection: mostly("wall") },
     query: { coords: one("POLYGON((0.01 0.01, 0.03 0.01, 0.03 0.03, 0.01 0.01))", "POLYGON(1)") },
   },
-  get_layer_annotation: { path: { layer: mostly("units", "cracks") } },
+  get_layer_annotation: {
+    path: { model: one("wall"), layer: one("units"), annotation: one("areas.1", "areas.2", "no") },
+  },
   get_photograph_picture: of_photograph,
   get_undistorted_photograph: of_photograph,
   set_photograph_picture: {
@@ -389,7 +391,7 @@ export const particulars = {
   delete_snapshot: { path: { model: one("wall"), ...spare("snapshot") } },
   delete_selection: { path: { model: one("wall"), ...spare("selection") } },
   change_selection: { path: { model: one("wall"), ...spare("selection") } },
-  delete_bill: { path: { project: one("site"), ...spare("bill", "1") } },
+  delete_bill: { path: { project: one("site"), ...spare("bill") } },
   replace_bill: { path: { project: one("site"), ...spare("bill", "1") } },
   import_bill: {
     path: { project: one("site") },
@@ -415,6 +417,10 @@ export const particulars = {
     }),
   },
   make_deposit: { path: { project: mostly("site") } },
+  set_photograph_rights: {
+    path: { model: mostly("wall") },
+    ...json({ by_name: { rights_uri: one("CC-BY-4.0", ""), photographs: one([1]) } }),
+  },
   change_snapshot: { path: { model: one("wall"), ...spare("snapshot") } },
   change_view: { path: { model: one("wall"), ...spare("view", "west") } },
   change_comment: { path: spare("comment", "2") },
