@@ -18,7 +18,9 @@ from support.readings import dab
 
 SKOS = "http://www.w3.org/2004/02/skos/core#"
 AAT_SALT = "http://vocab.getty.edu/aat/300011762"
-TERMS = f"code,label,label-de,definition,uri\nsalt,Salt,Salz,White crystals,{AAT_SALT}\nloss,Loss,,,\n"
+TERMS = (
+    f"code,label,label-de,definition,uri\nsalt,Salt,Salz,White crystals,{AAT_SALT}\nloss,Loss,,,\n"
+)
 HOSTILE = "</h1><script>alert(1)</script>"
 MANY = 230  # classes of a layer, more than a page of annotations
 
