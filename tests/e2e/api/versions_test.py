@@ -74,7 +74,7 @@ def versioned_changes(server):
                 asked = asked.replace("{" + name + "}", value)
             assert "{" not in asked, asked
             found.append((method.upper(), asked))
-    assert len(found) == 30, found
+    assert len(found) == 31, found
     return found
 
 

@@ -25,7 +25,7 @@ test.beforeAll(async ({ server: started, desk }) => {
 
 test("the dialog shows the addresses of the model", async () => {
   await open_tab(page, words, words.view.title);
-  await page.getByRole("button", { name: words.linked.open, exact: true }).click();
+  await page.getByRole("button", { name: words.gis.linked, exact: true }).click();
   await dialog().getByRole("dialog").waitFor();
   const address = (label) => dialog().getByRole("textbox", { name: label, exact: true });
   const { id } = await server.json("GET", "/models/demo-pot");

@@ -236,7 +236,7 @@ function ofModel(host: PageHost): Command[] {
       ? [opening(host, group, "cube", texts.model_export.open, { dialog: "export" })]
       : []),
     opening(host, group, "link", texts.gis.open, { dialog: "gis" }),
-    opening(host, group, "link", texts.linked.open, { dialog: "linked" }),
+    opening(host, group, "link", texts.gis.linked, { dialog: "linked" }),
     ...(session.canCurate
       ? [opening(host, group, "measure", texts.model.correct_size, { dialog: "scale" })]
       : []),

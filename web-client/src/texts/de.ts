@@ -249,7 +249,7 @@ export const texts = {
   demo: {
     open: "Demo zurücksetzen…",
     title: "Demo zurücksetzen",
-    lead: "Der Demo-Topf wird in den ursprünglichen Zustand zurückgesetzt. Alles, was darauf gemalt, gezeichnet oder geschrieben wurde, wird endgültig gelöscht. Andere Modelle und Tabellen des Projekts bleiben.",
+    lead: "Der Demo-Topf wird zurückgesetzt. Alles, was darauf gemalt, gezeichnet oder geschrieben wurde, wird endgültig gelöscht. Andere Modelle und Tabellen des Projekts bleiben.",
     reset: "Zurücksetzen",
     making: "Demo wird angelegt…",
     failed: "Die Demo wurde nicht angelegt. Versuchen Sie es noch einmal.",
@@ -490,7 +490,7 @@ export const texts = {
     lost: "Verbindung unterbrochen. Neuer Versuch …",
     moved: "Das Modell ist auf einem anderen Knoten. Verbindung wird hergestellt …",
     database_lost:
-      "Der Server hat die Verbindung zur Datenbank verloren. Sie können das Modell betrachten, aber das Bild ist möglicherweise veraltet, und Änderungen können nicht gespeichert werden. Neuer Versuch …",
+      "Der Server hat die Verbindung zur Datenbank verloren. Sie können das Modell betrachten, aber das Bild kann veraltet sein, und Änderungen werden nicht gespeichert. Neuer Versuch …",
     kept: (n) =>
       `${count(n, "Änderung ist", "Änderungen sind")} hier gespeichert und ${plural(n, "wird", "werden")} noch gesendet.`,
     retry: "Jetzt versuchen",
@@ -624,7 +624,7 @@ export const texts = {
   areas: {
     how: {
       polygon:
-        "Klicken Sie die Eckpunkte an. Zum Schließen klicken Sie auf den ersten oder drücken Eingabe. Rücktaste entfernt den letzten Eckpunkt, Esc bricht ab. Danach ziehen Sie Eckpunkte an eine andere Stelle, oder die kleinen Punkte dazwischen, um Eckpunkte einzufügen.",
+        "Klicken Sie die Eckpunkte an. Zum Schließen klicken Sie auf den ersten oder drücken Eingabe. Rücktaste entfernt den letzten, Esc bricht ab. Danach lassen sich Eckpunkte ziehen, und die kleinen Punkte dazwischen fügen weitere ein.",
       lasso: "Umfahren Sie den Bereich, der ausgewählt werden soll.",
       strokes:
         "Zeichnen Sie einen kurzen Strich in der Fläche und einen außerhalb: mit gedrückter Alt-Taste oder mit „Außen“. Weitere Striche korrigieren die Fläche.",
@@ -903,7 +903,7 @@ export const texts = {
       },
       significant_change: {
         title: "Signifikante Veränderung",
-        lead: "Signifikanter Zuwachs, signifikanter Verlust oder keine signifikante Veränderung. Signifikant heißt: Die Veränderung ist größer, als das Rauschen beider Scans und der Fehler ihrer Ausrichtung erklären. Ohne wirkliche Veränderung werden höchstens etwa 5 % der Oberfläche markiert.",
+        lead: "Signifikanter Zuwachs, signifikanter Verlust oder keine signifikante Veränderung. Signifikant heißt: größer, als Rauschen und Ausrichtung der Scans erklären. Ohne wirkliche Veränderung werden höchstens etwa 5 % der Oberfläche markiert.",
       },
       level_of_detection: {
         title: "Kleinste erkennbare Veränderung",
@@ -1123,7 +1123,7 @@ export const texts = {
     point_set: (record) => `Punkt für „${record}“ gesetzt.`,
     missed: "Dort ist keine Oberfläche.",
     changed_since:
-      "Nicht rückgängig gemacht: Die Tabelle wurde seitdem geändert. Entfernen Sie die Linie oder den Punkt im Formular des Datensatzes, oder machen Sie zuerst die späteren Änderungen in der Tabelle rückgängig.",
+      "Nicht rückgängig gemacht: Die Tabelle wurde seitdem geändert. Entfernen Sie die Linie oder den Punkt im Formular des Datensatzes, oder machen Sie zuerst die späteren Änderungen rückgängig.",
   },
 
   comments: {
@@ -1588,7 +1588,7 @@ export const texts = {
     look_delete_lead: "Das Bild wird für alle gelöscht. Dies kann nicht rückgängig gemacht werden.",
     no_looks: "Keine Oberflächenbilder.",
     no_looks_more:
-      "Ein Oberflächenbild ist ein Bild in den Texturkoordinaten des Modells: seine Farben oder dieselbe Oberfläche unter UV-Licht oder im Infrarot. Fügen Sie ein JPEG, PNG, TIFF, WebP, BMP oder TGA hinzu.",
+      "Ein Oberflächenbild hat die Texturkoordinaten des Modells: seine Farben oder dieselbe Oberfläche unter UV-Licht oder im Infrarot. Fügen Sie ein JPEG, PNG, TIFF, WebP, BMP oder TGA hinzu.",
     too_many_looks: (n) =>
       `Eine Ansicht zeigt höchstens ${n} Oberflächenbilder. Blenden Sie zuerst eines aus.`,
     light: "Licht",
@@ -1795,12 +1795,7 @@ export const texts = {
     title: "3D-Modell exportieren",
     open: "3D-Modell exportieren …",
   },
-  gis: { part: "GIS-Programme", title: "GIS-Programm verbinden", open: "GIS-Programm verbinden …" },
-  linked: {
-    part: "Kataloge und Betrachter",
-    title: "Verknüpfte Daten",
-    open: "Verknüpfte Daten …",
-  },
+  gis: { part: "Andere Programme", open: "GIS-Programm verbinden …", linked: "Verknüpfte Daten …" },
 
   tours: {
     title: "Führungen",

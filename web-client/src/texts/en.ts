@@ -1746,8 +1746,7 @@ export const texts = {
 
   condition_report: { title: "Condition report", open: "Condition report…" },
   model_export: { part: "3D model", title: "Export 3D model", open: "Export 3D model…" },
-  gis: { part: "GIS programs", title: "Connect a GIS program", open: "Connect a GIS program…" },
-  linked: { part: "Catalogs and viewers", title: "Linked data", open: "Linked data…" },
+  gis: { part: "Other programs", open: "Connect a GIS program…", linked: "Linked data…" },
 
   tours: {
     title: "Tours",

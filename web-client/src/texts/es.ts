@@ -1790,12 +1790,7 @@ export const texts = {
     title: "Exportar modelo 3D",
     open: "Exportar modelo 3D…",
   },
-  gis: {
-    part: "Programas SIG",
-    title: "Conectar un programa SIG",
-    open: "Conectar un programa SIG…",
-  },
-  linked: { part: "Catálogos y visores", title: "Datos enlazados", open: "Datos enlazados…" },
+  gis: { part: "Otros programas", open: "Conectar un programa SIG…", linked: "Datos enlazados…" },
   tours: {
     title: "Recorridos",
     new: "Nuevo recorrido…",

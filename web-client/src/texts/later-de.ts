@@ -152,6 +152,7 @@ export const laterTexts = {
     ready: "Das 3D-Modell ist fertig",
   },
   gis_dialog: {
+    title: "GIS-Programm verbinden",
     lead: "GIS-Programme wie QGIS und GDAL können die Ebenen aller Modelle ohne Dateien lesen (OGC API).",
     address: "Adresse",
     address_hint: "In QGIS: Layer → Layer hinzufügen → WFS-/OGC-API-Features-Layer hinzufügen …",
@@ -168,6 +169,7 @@ export const laterTexts = {
     collections: "Zeigen, was GIS-Programme von diesem Modell sehen",
   },
   linked_dialog: {
+    title: "Verknüpfte Daten",
     lead: "Kataloge, Betrachter und Skripte lesen das Modell unter diesen Adressen. Sie bleiben gleich, wenn sich Namen ändern, und können daher zitiert werden.",
     model: "Modell",
     model_hint: "Linked Art (CIDOC CRM) als JSON-LD oder Turtle, im Browser als Seite.",

@@ -149,6 +149,7 @@ export const laterTexts = {
     ready: "The 3D model is ready",
   },
   gis_dialog: {
+    title: "Connect a GIS program",
     lead: "GIS programs such as QGIS and GDAL can read the layers of all models without files (OGC API).",
     address: "Address",
     address_hint: "In QGIS: Layer → Add Layer → Add WFS / OGC API – Features Layer…",
@@ -165,6 +166,7 @@ export const laterTexts = {
     collections: "Show what GIS programs see of this model",
   },
   linked_dialog: {
+    title: "Linked data",
     lead: "Catalogs, viewers and scripts read the model under these addresses. The addresses stay the same when names change, so they can be cited.",
     model: "Model",
     model_hint: "Linked Art (CIDOC CRM) as JSON-LD or Turtle, and as a page in a browser.",

@@ -153,6 +153,7 @@ export const laterTexts = {
     ready: "El modelo 3D está listo",
   },
   gis_dialog: {
+    title: "Conectar un programa SIG",
     lead: "Los programas SIG como QGIS y GDAL pueden leer las capas de todos los modelos sin archivos (OGC API).",
     address: "Dirección",
     address_hint: "En QGIS: Capa → Añadir capa → Añadir capa WFS / OGC API – Features…",
@@ -169,6 +170,7 @@ export const laterTexts = {
     collections: "Mostrar lo que los programas SIG ven de este modelo",
   },
   linked_dialog: {
+    title: "Datos enlazados",
     lead: "Los catálogos, visores y scripts leen el modelo en estas direcciones. No cambian con los nombres, así que se pueden citar.",
     model: "Modelo",
     model_hint: "Linked Art (CIDOC CRM) en JSON-LD o Turtle, y como página en un navegador.",

@@ -110,11 +110,10 @@ export class StrataViewPanel extends SidePanel {
     }
     <div class="part">
       <h3>${texts.gis.part}</h3>
-      <div><button @click=${() => show("gis")}>${icon("link")}${texts.gis.open}</button></div>
-    </div>
-    <div class="part">
-      <h3>${texts.linked.part}</h3>
-      <div><button @click=${() => show("linked")}>${icon("link")}${texts.linked.open}</button></div>
+      <div>
+        <button @click=${() => show("gis")}>${icon("link")}${texts.gis.open}</button>
+        <button @click=${() => show("linked")}>${icon("link")}${texts.gis.linked}</button>
+      </div>
     </div>`;
   }
 }

@@ -55,7 +55,7 @@ export class StrataGisDialog extends LitElement {
   override render(): TemplateResult {
     const { model } = this.session;
     return html`<strata-dialog
-      heading=${texts.gis.title}
+      heading=${words.title}
       way_out=${texts.close}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >

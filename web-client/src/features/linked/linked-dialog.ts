@@ -47,7 +47,7 @@ export class StrataLinkedDialog extends LitElement {
   override render(): TemplateResult {
     const { model } = this.session;
     return html`<strata-dialog
-      heading=${texts.linked.title}
+      heading=${words.title}
       way_out=${texts.close}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
