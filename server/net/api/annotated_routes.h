@@ -35,7 +35,7 @@ class AnnotatedRoutes {
                  .body = has_body ? BodyKind::memory : BodyKind::none,
                  .max_body = has_body ? context_.options.max_json_bytes : 0,
                  .keeps_answer = true,
-                 .needs_version = method == Method::patch || method == Method::remove});
+                 .needs_version = method != Method::post});
   }
 
  private:

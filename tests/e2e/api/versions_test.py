@@ -85,6 +85,7 @@ def address_of_version(asked):
 
 BODIES = {
     P: {"description": "x"},
+    P + "/metadata": {"titles": [{"title": "Survey"}]},
     M: {"name": "Sheet"},
     M + "/looks/plain": {"opacity": 0.5},
     M + "/layers/finds": {"opacity": 0.5},

@@ -1546,7 +1546,7 @@ export const texts = {
     save_turtle: "Begriffe als SKOS (Turtle) speichern",
     title: "Begriffsliste importieren",
     more_title: (list) => `Begriffe für „${list}“`,
-    lead: "SKOS (Turtle, N-Triples oder RDF/XML), das Format veröffentlichter Thesauri, oder CSV mit den Spalten code, parent, label, label-de (oder eine andere Sprache), definition, uri, color und pattern. Nur code ist erforderlich.",
+    lead: "SKOS (Turtle, N-Triples oder RDF/XML) oder CSV mit den Spalten code, parent, label, label-de (oder eine andere Sprache), definition, uri, color und pattern. Nur code ist erforderlich.",
     more_lead:
       "SKOS oder CSV. Vorhandene Begriffe werden über URI oder Code erkannt und aktualisiert; ihre Kartierung bleibt erhalten. Andere werden hinzugefügt. Sie können dies rückgängig machen.",
     file: "Datei mit Begriffen",
@@ -2032,9 +2032,9 @@ export const texts = {
       brush: {
         title: "Malen",
         mouse:
-          "Wählen Sie den Pinsel (B), und ziehen Sie über das Modell. Mit [ und ] wird der Pinsel schmaler oder breiter. Jeder Strich wird sofort gespeichert, und andere sehen ihn, während Sie malen.",
+          "Wählen Sie den Pinsel (B), und ziehen Sie über das Modell. Mit [ und ] wird der Pinsel schmaler oder breiter. Jeder Strich wird sofort gespeichert, und andere sehen ihn.",
         touch:
-          "Wählen Sie den Pinsel, und malen Sie mit Finger oder Stift auf das Modell. Zwei Finger verschieben und zoomen weiterhin. Jeder Strich wird sofort gespeichert, und andere sehen ihn, während Sie malen.",
+          "Malen Sie mit dem Pinsel und Finger oder Stift. Zwei Finger verschieben und zoomen weiterhin. Jeder Strich wird sofort gespeichert, und andere sehen ihn.",
       },
       undo: {
         title: "Rückgängig",
@@ -2046,13 +2046,13 @@ export const texts = {
       values: {
         title: "Werte ablesen",
         mouse:
-          "Lassen Sie den Zeiger auf dem Modell ruhen: Unten rechts stehen die Werte der Ebenen an dieser Stelle. Mit diesem Werkzeug (I) oder mit einem Klick, solange „Drehen“ aktiv ist, öffnen Sie den Datensatz.",
+          "Halten Sie den Zeiger still: Unten rechts stehen die Werte der Ebenen. Mit diesem Werkzeug (I) oder mit einem Klick, solange „Drehen“ aktiv ist, öffnen Sie den Datensatz.",
         touch:
           "Wählen Sie dieses Werkzeug, und tippen Sie auf das Modell, um den Wert der ausgewählten Ebene abzulesen und ihren Datensatz zu öffnen.",
       },
       share: {
         title: "Teilen und Hilfe",
-        text: "Senden Sie die Adresse dieser Seite, um das Modell zu teilen. Ansicht → Ansichten speichert eine Ansicht mit eigenem Link. Die Hilfe listet alle Tasten und Gesten auf und startet diesen Rundgang erneut.",
+        text: "Die Adresse dieser Seite teilt das Modell. Ansicht → Ansichten speichert Ansichten mit eigenem Link. Die Hilfe nennt alle Tasten und Gesten und startet diesen Rundgang erneut.",
       },
     },
   },
