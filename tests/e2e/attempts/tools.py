@@ -12,6 +12,7 @@ WORDS = {
     "layer": "marks",
     "table": "kept",
     "key": "1",
+    "collection": "sheet.marks",
     "column": "note",
     "project": "default",
     "user": "owner",
