@@ -39,6 +39,15 @@ pkg_check_modules(QPDF REQUIRED IMPORTED_TARGET libqpdf)
 pkg_check_modules(LCMS REQUIRED IMPORTED_TARGET lcms2)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 
+# Open3D makes surfaces from points, in a program of its own (server/mesher). Its CMake package asks
+# for libraries that only other parts of it need.
+find_path(OPEN3D_INCLUDE open3d/geometry/PointCloud.h REQUIRED)
+find_library(OPEN3D_LIBRARY Open3D REQUIRED)
+find_package(fmt REQUIRED)
+add_library(strata_open3d INTERFACE)
+target_include_directories(strata_open3d SYSTEM INTERFACE ${OPEN3D_INCLUDE})
+target_link_libraries(strata_open3d INTERFACE ${OPEN3D_LIBRARY} fmt::fmt Eigen3::Eigen)
+
 # Eigen consists of headers. The definition makes the compiler refuse its files whose license is not
 # MPL 2.0.
 add_library(strata_eigen INTERFACE)

@@ -84,7 +84,7 @@ packages_to_build() {
 build_packages=(g++ cmake ninja-build pkg-config ccache mold git python3 python3-yaml ca-certificates
   libegl-dev libgl-dev libepoxy-dev libglm-dev libpq-dev nlohmann-json3-dev libvalijson-dev libsimdjson-dev
   libturbojpeg0-dev libjpeg62-turbo-dev libsodium-dev libssl-dev libspdlog-dev libcli11-dev libzstd-dev zlib1g-dev libbrotli-dev libpng-dev libtiff-dev libwebp-dev libstb-dev
-  libembree-dev libmeshoptimizer-dev libopenmesh-dev libqhull-dev libeigen3-dev libdraco-dev libzip-dev libshp-dev libgeos-dev libproj-dev libsqlite3-dev libxlsxwriter-dev libutf8proc-dev libpango1.0-dev libpugixml-dev libqpdf-dev liblcms2-dev libexpected-dev)
+  libembree-dev libmeshoptimizer-dev libopenmesh-dev libqhull-dev libeigen3-dev libopen3d-dev libfmt-dev libdraco-dev libzip-dev libshp-dev libgeos-dev libproj-dev libsqlite3-dev libxlsxwriter-dev libutf8proc-dev libpango1.0-dev libpugixml-dev libqpdf-dev liblcms2-dev libexpected-dev)
 run_packages=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri postgresql-15 fonts-dejavu-core fonts-liberation2 curl)
 test_packages=(libgtest-dev libgmock-dev dpkg-dev chromium openssl libpcre2-8-0 poppler-utils qpdf clang-format-14 clang-tidy-16 black flake8 isort shellcheck xz-utils python3-pytest python3-pandas python3-openpyxl python3-ezdxf python3-rdflib gdal-bin)
 fuzz_packages=(clang-14 libclang-rt-14-dev llvm-14)

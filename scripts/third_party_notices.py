@@ -17,6 +17,7 @@ import sys
 OF_THE_SYSTEM = re.compile(
     r"^(libc6|libc6-dev|linux-libc-dev|libstdc\+\+.*|libgcc.*|gcc-\d+-base|cpp.*)$"
 )
+PROGRAMS = ("strata", "strata-mesher")
 HEAD = """Strata is distributed under the MIT licence (LICENSE). The program holds or links the libraries below; each stands under the licence that follows its name.
 
 """
@@ -30,7 +31,7 @@ def headers_of(build):
     """Returns the headers outside the project that the program's own units read."""
     units = {
         line.split(":")[0]
-        for line in run("ninja", "-C", build, "-t", "inputs", "strata").splitlines()
+        for line in run("ninja", "-C", build, "-t", "inputs", *PROGRAMS).splitlines()
         if line.split(":")[0].endswith(".o")
     }
     wanted, found = False, set()
@@ -93,7 +94,7 @@ def main():
     packages = sorted(
         packages_of(
             {path for path in headers if not path.startswith(deps)}
-            | libraries_of(os.path.join(build, "bin", "strata"))
+            | set().union(*(libraries_of(os.path.join(build, "bin", each)) for each in PROGRAMS))
         )
         | set(unpacked)
     )

@@ -23,6 +23,7 @@ const howTo = {
     "find-cracks",
     "find-stones",
     "interpolate-readings",
+    "import-point-clouds",
     "import-maps",
   ],
   "Keep records": ["keep-records", "use-lists-of-terms", "attach-files", "use-photographs"],

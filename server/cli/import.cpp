@@ -101,7 +101,7 @@ Command add_import(CLI::App& app) {
   command
       ->add_option(
           "files", options->files,
-          "Scans: PLY, OBJ, STL, glTF, GLB or zip, and the material and picture files that they use")
+          "Scans: PLY, OBJ, STL, glTF, GLB, LAS or zip, and the material and picture files that they use")
       ->required();
   command->add_option("--name", options->request.name,
                       "Name of the model (default: the file's name)");
@@ -123,6 +123,17 @@ Command add_import(CLI::App& app) {
       ->add_option(
           "--weld", options->request.weld_distance,
           "Join vertices closer than this distance, in the file's units; equal vertices are always joined")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--cell", options->request.cell,
+                   "For points without triangles: longest edge of the finest triangles, in the "
+                   "file's units (default: about 1.5 times the distance between points)")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option(
+          "--gap", options->request.gap,
+          "For points without triangles: widest gap that the surface closes, in the file's "
+          "units (default: 12 times the distance between points)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--strict", options->request.strict, "Refuse a file that needs repair");
   command

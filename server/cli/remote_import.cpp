@@ -174,7 +174,12 @@ std::string import_path(Client& client, const jobs::ImportRequest& request) {
   add("object", request.object);
   add("survey_date", request.survey_date);
   if (request.resolution) add("resolution", std::to_string(request.resolution));
-  if (request.weld_distance > 0) add("weld", (std::ostringstream() << request.weld_distance).str());
+  const auto add_length = [&](const char* name, double length) {
+    if (length > 0) add(name, (std::ostringstream() << length).str());
+  };
+  add_length("weld", request.weld_distance);
+  add_length("cell", request.cell);
+  add_length("gap", request.gap);
   if (request.strict) add("strict", "true");
   return path;
 }

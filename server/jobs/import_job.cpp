@@ -111,6 +111,11 @@ Result<void> check(const ImportRequest& request) {
   if (!(request.weld_distance >= 0 && request.weld_distance < 1e15))
     return fail(ErrorCode::invalid, "Invalid distance",
                 "The welding distance must be 0 or a positive number.", "weld");
+  for (const auto& [field, length] :
+       {std::pair("cell", request.cell), std::pair("gap", request.gap)})
+    if (!(length >= 0 && length < 1e15))
+      return fail(ErrorCode::invalid, "Invalid length",
+                  "The length must be 0 or a positive number.", field);
   const int resolution = request.resolution;
   if (resolution != 0 && (resolution < kLowestResolution || resolution > kMaxResolution ||
                           !std::has_single_bit(unsigned(resolution))))
@@ -128,10 +133,13 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
 
   progress.begin_stage(0, kRead);
   progress.report(0, "Reading the file");
-  auto loaded = STRATA_TRY(mesh::load_mesh(request.files, progress, {request.weld_distance}));
+  auto loaded = STRATA_TRY(mesh::load_mesh(
+      request.files, progress,
+      {request.weld_distance, {request.cell, request.gap, scan.path.parent_path()}}));
   if (request.strict) STRATA_TRY(refuse_faults(loaded.repairs));
 
-  ScaleProposal proposal = mesh::propose_scale(loaded, request.crs);
+  const std::string& crs = request.crs.empty() ? loaded.crs : request.crs;
+  ScaleProposal proposal = mesh::propose_scale(loaded, crs);
   if (request.unit) {
     proposal.unit = *request.unit;
     proposal.unit_reason = ScaleReason::given;
@@ -175,7 +183,8 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   else if (request.up_proposed)
     model.up = proposal.up;
   model.proposal = proposal;
-  model.crs = request.crs;
+  model.crs = crs;
+  model.from_points = loaded.from_points;
   fresh.object_name = request.object;
   model.survey_date = request.survey_date;
   model.default_resolution = request.resolution == 0 ? kLowestResolution : request.resolution;

@@ -34,6 +34,8 @@ struct ImportRequest {
   int resolution = 0;        // default resolution of new layers; 0: 2048
   double weld_distance = 0;  // joins vertices at a smaller distance; in the file's units
   bool strict = false;       // reject a file that needs repair
+  // For files with points only, in the file's units; 0: the default (mesh::PointOptions).
+  double cell = 0, gap = 0;
 };
 
 // Checks a request before the files are uploaded. It checks the names of the files, but not their

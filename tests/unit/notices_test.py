@@ -16,6 +16,7 @@ EXPECTED = (
     "libspdlog-dev",
     "libboost1.81-dev",
     "libdraco",
+    "libopen3d",
     "libsimdjson",
     "libpq5",
     "libssl3",

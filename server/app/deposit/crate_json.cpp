@@ -50,6 +50,7 @@ json to_crate(const Model& model) {
            {"source_download", name(model.source_download)},
            {"proposal", model.proposal ? to_json(*model.proposal) : json()},
            {"open_edges", model.open_edges ? to_json(*model.open_edges, 1.0) : json()},
+           {"from_points", model.from_points ? to_json(*model.from_points, 1.0) : json()},
            {"repairs", json::array()}};
   for (const auto& [member, text] : kModelTexts) all[member] = model.*text;
   for (const Repair& repair : model.repairs)
@@ -74,6 +75,7 @@ Model model_of(const json& all) {
   model.source_download = named(all.at("source_download"), parse_role);
   model.proposal = scale_proposal_from_json(all.at("proposal"));
   model.open_edges = open_edges_from_json(all.at("open_edges"));
+  model.from_points = surface_from_points_from_json(all.value("from_points", json()));
   for (const auto& [member, text] : kModelTexts) model.*text = all.at(member).get<std::string>();
   for (const json& repair : all.at("repairs"))
     model.repairs.push_back(

@@ -80,6 +80,27 @@ nlohmann::json to_json(const OpenEdges& edges, double metres_per_unit) {
       {"loops", edges.loops}, {"length_m", edges.length * metres_per_unit}, {"longest_m", longest}};
 }
 
+nlohmann::json to_json(const SurfaceFromPoints& facts, double metres_per_unit) {
+  return {{"points", facts.points},
+          {"used", facts.used},
+          {"point_spacing_m", facts.point_spacing * metres_per_unit},
+          {"cell_m", facts.cell * metres_per_unit},
+          {"gap_m", facts.gap * metres_per_unit},
+          {"distance_median_m", facts.distance_median * metres_per_unit},
+          {"distance_95_m", facts.distance_95 * metres_per_unit}};
+}
+
+std::optional<SurfaceFromPoints> surface_from_points_from_json(const nlohmann::json& json) {
+  if (!json.is_object()) return std::nullopt;
+  return SurfaceFromPoints{json.value("points", std::uint64_t{0}),
+                           json.value("used", std::uint64_t{0}),
+                           json.value("point_spacing_m", 0.0),
+                           json.value("cell_m", 0.0),
+                           json.value("gap_m", 0.0),
+                           json.value("distance_median_m", 0.0),
+                           json.value("distance_95_m", 0.0)};
+}
+
 std::optional<OpenEdges> open_edges_from_json(const nlohmann::json& json) {
   if (!json.is_object()) return std::nullopt;
   return OpenEdges{json.value("loops", std::uint64_t{0}), json.value("length_m", 0.0),
@@ -179,6 +200,7 @@ nlohmann::json to_json(const Model& model, const std::string& project_slug) {
   }
   if (model.proposal) json["proposal"] = to_json(*model.proposal);
   if (model.open_edges) json["open_edges"] = to_json(*model.open_edges, model.metres());
+  if (model.from_points) json["from_points"] = to_json(*model.from_points, model.metres());
   return json;
 }
 

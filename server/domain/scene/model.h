@@ -95,6 +95,19 @@ nlohmann::json to_json(const OpenEdges& edges, double metres_per_unit);
 // Reads the stored form, where metres_per_unit is 1.
 std::optional<OpenEdges> open_edges_from_json(const nlohmann::json& json);
 
+// How the surface of a model was made from a point cloud at import. Lengths are in units.
+struct SurfaceFromPoints {
+  std::uint64_t points = 0;                     // in the file
+  std::uint64_t used = 0;                       // after thinning
+  double point_spacing = 0;                     // the median distance of a point to the next one
+  double cell = 0;                              // the longest edge of the finest triangles, about
+  double gap = 0;                               // the widest gap between points that was closed
+  double distance_median = 0, distance_95 = 0;  // of the points to the surface
+};
+nlohmann::json to_json(const SurfaceFromPoints& facts, double metres_per_unit);
+// Reads the stored form, where metres_per_unit is 1.
+std::optional<SurfaceFromPoints> surface_from_points_from_json(const nlohmann::json& json);
+
 struct SourceFile {
   std::string name;
   std::string sha256;  // in lowercase hex
@@ -124,6 +137,7 @@ struct Model {
   std::vector<Repair> repairs;
   // nullopt for models that were imported before the edges were measured.
   std::optional<OpenEdges> open_edges;
+  std::optional<SurfaceFromPoints> from_points;  // nullopt: the file contained triangles
   std::vector<SourceFile> source_files;
   // The lowest role that may get the source files or equivalent data.
   Role source_download = Role::annotator;

@@ -20,7 +20,7 @@ struct Nature {
 constexpr std::string_view kUnpack = "Unpack it and import its files.",
                            kFetch = "Download the mesh itself.",
                            kExport = "Export the mesh as PLY, OBJ, STL or glTF.";
-constexpr std::array<Nature, 27> kNatures{{
+constexpr std::array<Nature, 28> kNatures{{
     {"PK\3\4"sv, "a zip archive", "Unpack it, or change the end of its name to .zip.",
      InputKind::zip},
     {"\x1f\x8b"sv, "a gzip archive", kUnpack},
@@ -46,7 +46,9 @@ constexpr std::array<Nature, 27> kNatures{{
     {"Kaydara FBX"sv, "an FBX file", kExport},
     {"; FBX"sv, "an FBX file", kExport},
     {"BLENDER"sv, "a Blender file", kExport},
-    {"LASF"sv, "a LAS point cloud", "Create a mesh from it before you import it."},
+    {"LASF"sv, "a LAS point cloud", "Change the end of its name to .las.", InputKind::las},
+    {"ASTM-E57"sv, "an E57 point cloud",
+     "Export the points as PLY, for example with CloudCompare."},
     {"#VRML"sv, "a VRML file", kExport},
     {"ply\n"sv, "a PLY file", "Change the end of its name to .ply.", InputKind::ply},
     {"ply\r"sv, "a PLY file", "Change the end of its name to .ply.", InputKind::ply},

@@ -14,7 +14,17 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::string_view kTaken =
-    "send a PLY, OBJ, STL, glTF or GLB file, alone, with its textures, or in a zip archive";
+    "send a PLY, OBJ, STL, glTF, GLB or LAS file, alone, with its textures, or in a zip archive";
+
+// The usual formats of laser scanners that the server cannot read, and what to do with them.
+std::string advice_for(std::string_view end) {
+  static constexpr std::string_view kCompressed[] = {".laz", ".e57", ".pts", ".ptx",
+                                                     ".pcd", ".xyz", ".fls", ".rcp"};
+  if (std::ranges::find(kCompressed, end) == std::end(kCompressed))
+    return "Please " + std::string(kTaken) + ".";
+  return "Export the points as PLY (with colors and normals) or as LAS without compression, for "
+         "example with CloudCompare.";
+}
 
 std::string_view last_part(std::string_view path) {
   const auto slash = path.find_last_of("/\\");
@@ -65,7 +75,8 @@ std::string listed(std::span<const std::string> filenames, std::span<const std::
 InputKind input_kind(std::string_view filename) {
   static constexpr std::pair<std::string_view, InputKind> kKinds[] = {
       {".ply", InputKind::ply},   {".obj", InputKind::obj}, {".stl", InputKind::stl},
-      {".gltf", InputKind::gltf}, {".glb", InputKind::glb}, {".zip", InputKind::zip}};
+      {".gltf", InputKind::gltf}, {".glb", InputKind::glb}, {".las", InputKind::las},
+      {".zip", InputKind::zip}};
   const std::string end = ending(filename);
   for (const auto& [name, kind] : kKinds)
     if (name == end) return kind;
@@ -99,8 +110,8 @@ Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
                 "filename");
   if (filenames.size() == 1)
     return fail(ErrorCode::unsupported, "Unsupported format",
-                "'" + ending(filenames[0]) + "' files are not supported. Please " +
-                    std::string(kTaken) + ".",
+                "'" + ending(filenames[0]) + "' files are not supported. " +
+                    advice_for(ending(filenames[0])),
                 "filename");
   return fail(ErrorCode::unsupported, "No mesh among the files",
               "None of the " + std::to_string(filenames.size()) + " files is a mesh. Please " +

@@ -21,7 +21,7 @@ struct InputFile {
   std::filesystem::path path;
 };
 
-enum class InputKind { ply, obj, stl, gltf, glb, zip, companion };
+enum class InputKind { ply, obj, stl, gltf, glb, las, zip, companion };
 
 // Determines the kind of a file from the extension of its name, in upper or lower case.
 InputKind input_kind(std::string_view filename);

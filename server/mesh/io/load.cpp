@@ -17,6 +17,7 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
       case InputKind::ply: return parse_ply(files, progress);
       case InputKind::obj: return parse_obj(files, progress);
       case InputKind::stl: return parse_stl(files, progress);
+      case InputKind::las: return parse_las(files, progress);
       default: return parse_gltf(files, progress);
     }
   }();
@@ -32,14 +33,8 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
     loaded->unit = unit->value;
   if (const auto up = stated_up(loaded->comments); up && loaded->up.empty()) loaded->up = up->value;
   adopt_lone_picture(files, loaded->mesh, loaded->repairs);
-  if (loaded->mesh.triangles.empty()) {
-    return refuse_file(
-        loaded->mesh.positions.empty()
-            ? "The file contains no triangle: it is empty."
-            : "The file contains " + std::to_string(loaded->mesh.positions.size()) +
-                  " vertices but no triangle. A point cloud cannot have layers. Create a mesh "
-                  "from it before you import it.");
-  }
+  if (loaded->mesh.triangles.empty() && loaded->mesh.positions.empty())
+    return refuse_file("The file contains no triangle and no point: it is empty.");
   return loaded;
 }
 
@@ -51,6 +46,11 @@ Result<LoadedMesh> load_mesh(InputFiles files, Progress& progress, const LoadOpt
     const InputFiles opened = std::move(files);
     return parse(opened, progress);
   }());
+  if (loaded.mesh.triangles.empty()) {
+    loaded.from_points = STRATA_TRY(
+        surface_from_points(loaded.mesh, loaded.point_normals, options.points, progress));
+    loaded.point_normals = {};
+  }
   STRATA_TRY(repair(loaded, progress, options));
   return loaded;
 }

@@ -6,6 +6,7 @@
 
 #include "core/progress.h"
 #include "mesh/io/input_files.h"
+#include "mesh/points/surface_from_points.h"
 #include "mesh/surface/triangle_mesh.h"
 
 namespace strata::mesh {
@@ -23,11 +24,17 @@ struct LoadedMesh {
   std::optional<Unit> unit = {};
   // "y" for glTF, or taken from a comment; empty: not stated
   std::string up = {};
+  std::string crs = {};                    // "EPSG:n", if a LAS file states it
   std::vector<std::string> comments = {};  // comments of the file, see file_comments
+  // The normals of a file without triangles, one per position, or empty.
+  std::vector<glm::vec3> point_normals = {};
+  // Set if the file contains points without triangles, from which the surface was made.
+  std::optional<SurfaceFromPoints> from_points = {};
 };
 
 struct LoadOptions {
   double weld_distance = 0;  // in file units; vertices within this distance are also joined
+  PointOptions points = {};  // used if the file contains points without triangles
 };
 
 // Returns true if this repair means that the file had a fault. Joining equal vertices does not
@@ -44,10 +51,13 @@ bool is_fault(const Repair& repair);
 //   options; UDIM tiles
 // - STL: binary, including headers that begin with "solid"; ASCII in upper or lower case, with
 //   comments
+// - LAS 1.0 to 1.4 without compression (see parse_las)
 // - glTF 2.0 and GLB: scenes of nodes with transforms in double precision, EXT_mesh_gpu_instancing,
 //   triangles, strips and fans; Draco, meshopt (EXT and KHR), quantized and sparse data; any
 //   TEXCOORD set with KHR_texture_transform; COLOR_0; data in the file, in separate files or in
 //   data URIs
+//
+// If a file contains points but no triangle, a surface is made from them (surface_from_points).
 //
 // Lines of text end with LF, CRLF or CR. A byte order mark is skipped. OBJ, MTL and STL may be
 // UTF-16 with a byte order mark.
@@ -61,7 +71,7 @@ bool is_fault(const Repair& repair);
 // - unreadable or truncated files, and counts that the file cannot hold
 // - polygons with more than kMaxPolygonCorners corners, and more than kMaxTriangles triangles
 // - indices out of range, and triangles with NaN or infinite coordinates (with their number)
-// - no triangles
+// - no triangles and too few points
 // - glTF buffers that were not uploaded, and unsupported required glTF extensions
 //
 // A missing image is noted, and the mesh is loaded without it.

@@ -19,6 +19,11 @@ Result<LoadedMesh> parse_stl(const InputFiles& files, Progress& progress,
                              std::size_t max_triangles = kMaxTriangles);
 Result<LoadedMesh> parse_gltf(const InputFiles& files, Progress& progress,
                               std::size_t max_triangles = kMaxTriangles);
+// Reads the points of a LAS file (ASPRS LAS 1.0 to 1.4, formats 0 to 10) with their colors. Leaves
+// out points that the file marks as withheld or as noise. Takes the coordinate system from GeoTIFF
+// keys or from WKT, and the unit m if the system is projected in meters. Refuses LAZ, because no
+// library for it is available, and coordinates in degrees.
+Result<LoadedMesh> parse_las(const InputFiles& files, Progress& progress);
 Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& options = {});
 
 // Parsers report progress up to this share of the whole. `repair` reports the rest.

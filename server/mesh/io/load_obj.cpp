@@ -66,12 +66,9 @@ class ObjReader {
     }
     if (positions >= 0xffffffffu || uvs >= 0xffffffffu)
       return refuse_file("The file has more than 4 294 967 294 vertices. Split the mesh.");
-    if (faces == 0)
+    if (faces == 0 && positions == 0)
       return refuse_file(
-          positions > 0
-              ? "The OBJ has vertices but no faces. A point cloud cannot have layers. Create a "
-                "mesh from it before you import it."
-              : "The OBJ has neither vertices nor faces: it is empty, or it is not an OBJ file.");
+          "The OBJ has neither vertices nor faces: it is empty, or it is not an OBJ file.");
     // Lines shorter than "v 0 0 0", "vt 0" and "f 1 2 3" are refused or have no effect.
     loaded_.mesh.positions.reserve(std::min<std::uint64_t>(positions, bytes_.size() / 8 + 1));
     uvs_.reserve(std::min<std::uint64_t>(uvs, bytes_.size() / 5 + 1));

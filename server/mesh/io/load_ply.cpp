@@ -67,11 +67,13 @@ class PlyReader {
     const PlyType color_type =
         colors.present() ? element.properties[colors.rgba[0]].type : PlyType::u8;
     const auto [u, v] = find_uv(element);
+    const auto normal = normals_of_points(element);
     has_vertices_ = true;
     TriangleMesh& mesh = loaded_.mesh;
     mesh.positions.reserve(element.count);
     if (colors.present()) mesh.vertex_colors.reserve(element.count);
     if (u >= 0) vertex_uvs_.reserve(element.count);
+    if (normal) loaded_.point_normals.reserve(element.count);
     RealColorScale real_scale;
     std::vector<double> values(element.properties.size());
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -86,6 +88,9 @@ class PlyReader {
       source_.end_element();
       mesh.positions.emplace_back(values[*x], values[*y], values[*z]);
       if (u >= 0) vertex_uvs_.emplace_back(values[u], values[v]);
+      if (normal)
+        loaded_.point_normals.emplace_back(values[(*normal)[0]], values[(*normal)[1]],
+                                           values[(*normal)[2]]);
       if (!colors.present()) continue;
       double rgba[4] = {0, 0, 0, 255};
       for (int k = 0; k < (colors.alpha() ? 4 : 3); ++k)
@@ -95,6 +100,19 @@ class PlyReader {
                                        : pack_color(rgba[0], rgba[1], rgba[2], rgba[3]));
     }
     return {};
+  }
+
+  // Only points need the normals of the file. The normals of a mesh follow from its triangles.
+  std::optional<std::array<int, 3>> normals_of_points(const PlyElement& element) const {
+    const bool triangles = std::ranges::any_of(header_.elements, [](const PlyElement& each) {
+      return (each.name == "face" || each.name == "tristrips") && each.count > 0;
+    });
+    const auto x = element.find({"nx", "normal_x"}), y = element.find({"ny", "normal_y"}),
+               z = element.find({"nz", "normal_z"});
+    if (triangles || !x || !y || !z) return std::nullopt;
+    for (const int at : {*x, *y, *z})
+      if (element.properties[at].count_type) return std::nullopt;
+    return std::array{*x, *y, *z};
   }
 
   static std::pair<int, int> find_uv(const PlyElement& element) {

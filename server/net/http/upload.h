@@ -28,7 +28,7 @@ class UploadedFiles {
 };
 
 constexpr const char* kScanUpload =
-    "Send the scan as the body (PLY, OBJ, STL, glTF, GLB, or a zip of one scan with its textures), or the mesh and its "
+    "Send the scan as the body (PLY, OBJ, STL, glTF, GLB, LAS, or a zip of one scan with its textures), or the mesh and its "
     "material and picture files together in a multipart/form-data form.";
 
 // Returns the files of a request whose body is in a file. A file is the body itself or a part of a

@@ -208,7 +208,7 @@ INSTANTIATE_TEST_SUITE_P(
     all, MalformedObj,
     testing::Values(
         BadObj{"empty", "", "empty"}, BadObj{"other", "hello\n", "neither vertices nor faces"},
-        BadObj{"points", kThree, "point cloud"},
+        BadObj{"points", kThree, "3 vertices but no triangle"},
         BadObj{"index", kThree + "\nf 1 2 4\n",
                "Line 5: the face refers to vertex 4, but the file has 3"},
         BadObj{"zero", kThree + "f 0 1 2\n", "vertex 0"},

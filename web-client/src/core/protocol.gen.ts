@@ -705,6 +705,24 @@ export interface OpenEdges {
   longest_m: number[];
 }
 
+/** How the surface was made from a point cloud. Models of files with triangles do not have this member. */
+export interface SurfaceFromPoints {
+  /** Number of points in the file. */
+  points: number;
+  /** Number of points after thinning. */
+  used: number;
+  /** Median distance of a point to the next one. */
+  point_spacing_m: number;
+  /** Approximate length of the longest edge of the finest triangles. */
+  cell_m: number;
+  /** The widest gap between points that was closed. */
+  gap_m: number;
+  /** Median distance of the points to the surface. */
+  distance_median_m: number;
+  /** 95 % of the points are at most this far from the surface. */
+  distance_95_m: number;
+}
+
 /** Uploaded file, which is stored unchanged. */
 export interface SourceFile {
   name: string;
@@ -741,6 +759,7 @@ export interface Model {
   atlas: Atlas;
   repairs: Repair[];
   open_edges?: OpenEdges;
+  from_points?: SurfaceFromPoints;
   source_files: SourceFile[];
   /** Default resolution of new layers. */
   default_resolution: Resolution;

@@ -3754,6 +3754,8 @@ export interface components {
          * @enum {string}
          */
         StatisticsPart: wire.StatisticsPart;
+        /** How the surface was made from a point cloud */
+        SurfaceFromPoints: wire.SurfaceFromPoints;
         /** Point on the surface */
         SurfacePlace: wire.SurfacePlace;
         /** Point on the surface, with values */
@@ -5247,8 +5249,11 @@ export interface operations {
     import_model: {
         parameters: {
             query?: {
+                cell?: number;
                 crs?: string;
                 filename?: string;
+                files_of?: string;
+                gap?: number;
                 name?: string;
                 object?: string;
                 project?: string;

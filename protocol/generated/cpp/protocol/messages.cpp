@@ -2081,6 +2081,28 @@ nlohmann::json to_json(const OpenEdges& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, SurfaceFromPoints& value) {
+  read_member(json, "points", value.points);
+  read_member(json, "used", value.used);
+  read_member(json, "point_spacing_m", value.point_spacing_m);
+  read_member(json, "cell_m", value.cell_m);
+  read_member(json, "gap_m", value.gap_m);
+  read_member(json, "distance_median_m", value.distance_median_m);
+  read_member(json, "distance_95_m", value.distance_95_m);
+}
+
+nlohmann::json to_json(const SurfaceFromPoints& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "points", value.points);
+  write_member(json, "used", value.used);
+  write_member(json, "point_spacing_m", value.point_spacing_m);
+  write_member(json, "cell_m", value.cell_m);
+  write_member(json, "gap_m", value.gap_m);
+  write_member(json, "distance_median_m", value.distance_median_m);
+  write_member(json, "distance_95_m", value.distance_95_m);
+  return json;
+}
+
 void read(const nlohmann::json& json, SourceFile& value) {
   read_member(json, "name", value.name);
   read_member(json, "sha256", value.sha256);

@@ -115,6 +115,7 @@ enum class Schema {
   TexelSize,
   Repair,
   OpenEdges,
+  SurfaceFromPoints,
   SourceFile,
   Model,
   SurveyDate,
@@ -472,7 +473,7 @@ enum class Schema {
   UnrolledLine,
   Unrolled,
 };
-constexpr int kSchemaCount = 446;
+constexpr int kSchemaCount = 447;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -981,6 +982,22 @@ void read(const nlohmann::json& json, OpenEdges& value);
 nlohmann::json to_json(const OpenEdges& value);
 template <>
 inline constexpr Schema kSchemaOf<OpenEdges> = Schema::OpenEdges;
+
+// How the surface was made from a point cloud. Models of files with triangles do not have this member.
+struct SurfaceFromPoints {
+  std::int64_t points = 0;  // Number of points in the file.
+  std::int64_t used = 0;  // Number of points after thinning.
+  double point_spacing_m = 0;  // Median distance of a point to the next one.
+  double cell_m = 0;  // Approximate length of the longest edge of the finest triangles.
+  double gap_m = 0;  // The widest gap between points that was closed.
+  double distance_median_m = 0;  // Median distance of the points to the surface.
+  double distance_95_m = 0;  // 95 % of the points are at most this far from the surface.
+  bool operator==(const SurfaceFromPoints&) const = default;
+};
+void read(const nlohmann::json& json, SurfaceFromPoints& value);
+nlohmann::json to_json(const SurfaceFromPoints& value);
+template <>
+inline constexpr Schema kSchemaOf<SurfaceFromPoints> = Schema::SurfaceFromPoints;
 
 // Uploaded file, which is stored unchanged.
 struct SourceFile {

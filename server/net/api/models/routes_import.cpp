@@ -1,4 +1,5 @@
 #include <charconv>
+#include <fstream>
 #include <memory>
 
 #include "core/temporary_file.h"
@@ -16,6 +17,7 @@
 #include "net/transport/server_options.h"
 #include "room/rooms.h"
 #include "store/content/idempotent_response.h"
+#include "store/content/models.h"
 #include "store/content/projects.h"
 #include "store/store.h"
 
@@ -23,6 +25,18 @@ namespace strata::net {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Reads a length in the units of the file. 0 if the query does not contain it.
+Result<double> length_of(const Request& request, const std::string& name) {
+  const std::string text = request.query_or(name, {});
+  if (text.empty()) return 0.0;
+  double length = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
+  if (error != std::errc() || end != text.data() + text.size())
+    return fail(ErrorCode::invalid, "Not a number",
+                "`" + name + "` must be a distance in the units of the file, such as 0.05.", name);
+  return length;
+}
 
 // Reads all parameters of the import from the query. The files are in the body.
 Result<jobs::ImportRequest> import_request(const RouteContext& context, const Request& request) {
@@ -57,13 +71,9 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
     auto resolution = STRATA_TRY(parse_integer(text, 1, INT32_MAX, "resolution"));
     requested.resolution = static_cast<int>(resolution);
   }
-  if (auto text = request.query_or("weld", {}); !text.empty()) {
-    const auto [end, error] =
-        std::from_chars(text.data(), text.data() + text.size(), requested.weld_distance);
-    if (error != std::errc() || end != text.data() + text.size())
-      return fail(ErrorCode::invalid, "Not a number",
-                  "`weld` must be a distance in the units of the file, such as 0.05.", "weld");
-  }
+  requested.weld_distance = STRATA_TRY(length_of(request, "weld"));
+  requested.cell = STRATA_TRY(length_of(request, "cell"));
+  requested.gap = STRATA_TRY(length_of(request, "gap"));
   const std::string strict = request.query_or("strict", "false");
   if (strict != "true" && strict != "false")
     return fail(ErrorCode::invalid, "Not true or false", "`strict` must be true or false.",
@@ -73,9 +83,48 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   return requested;
 }
 
+// The model whose stored files the query asks to import again. The caller is a curator in the
+// project of the new model, and a model of another project is like a missing one.
+Result<std::optional<Model>> imported_again(const RouteContext& context, const Request& request) {
+  const std::string ref = request.query_or("files_of", {});
+  if (ref.empty()) return std::optional<Model>();
+  const auto project =
+      STRATA_TRY(context.store.projects().find(request.query_or("project", "default")));
+  auto model = context.store.models().find(ref);
+  if (model && model->project_id == project.id) return std::optional(std::move(*model));
+  if (!model && model.error().code != ErrorCode::not_found) return tl::unexpected(model.error());
+  return fail(ErrorCode::invalid, "No such model",
+              "`files_of` must be a model of the project. Name its project in `project`.",
+              "files_of");
+}
+
+// Writes the stored files of a model to temporary files.
+Result<std::vector<std::shared_ptr<TemporaryFile>>> fetch_sources(store::Store& store,
+                                                                  const Model& model,
+                                                                  const fs::path& folder,
+                                                                  Progress& progress) {
+  std::vector<std::shared_ptr<TemporaryFile>> files;
+  for (const SourceFile& source : model.source_files) {
+    files.push_back(
+        std::make_shared<TemporaryFile>(folder / (to_string(random_uuid()) + ".upload")));
+    std::ofstream out(files.back()->path, std::ios::binary);
+    STRATA_TRY(
+        store.models().read_source(model.id, source.name, [&](std::span<const std::uint8_t> chunk) {
+          out.write(reinterpret_cast<const char*>(chunk.data()), std::streamsize(chunk.size()));
+          return bool(out) && !progress.cancelled();
+        }));
+    if (progress.cancelled()) return cancelled_problem();
+    if (!out.flush())
+      return fail(ErrorCode::storage_full, "Disk full",
+                  "The files of the model could not be copied for the import.");
+  }
+  return files;
+}
+
 // Runs before the upload. The file name may be in the form, which is not read yet.
 Result<void> check_import(const RouteContext& context, const Request& request) {
   auto requested = STRATA_TRY(import_request(context, request));
+  STRATA_TRY(imported_again(context, request));
   if (requested.files[0].filename.empty()) requested.files[0].filename = "named in the body.ply";
   return jobs::check(requested);
 }
@@ -100,7 +149,13 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
   if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto requested = import_request(context, request);
   if (!requested) return tl::unexpected(requested.error());
-  auto uploads = STRATA_TRY(take_upload(request, context.options.upload_dir));
+  const auto again = STRATA_TRY(imported_again(context, request));
+  std::vector<Upload> uploads;
+  if (!again) uploads = STRATA_TRY(take_upload(request, context.options.upload_dir));
+  std::error_code unknown;
+  if (again && fs::file_size(request.body_file, unknown) > 0 && !unknown)
+    return fail(ErrorCode::invalid, "Two scans", "Send a scan or `files_of`, but not both.",
+                "files_of");
   std::vector<std::shared_ptr<TemporaryFile>> stored_files;
   const std::string named = requested->files[0].filename;
   requested->files.clear();
@@ -111,6 +166,9 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
   }
   // The file name in the query has precedence over the file name in a form.
   if (requested->files.size() == 1 && !named.empty()) requested->files[0].filename = named;
+  if (again)
+    for (const SourceFile& source : again->source_files)
+      requested->files.push_back({source.name, {}});
   STRATA_TRY(jobs::check(*requested));
 
   const store::IdempotentResponse<Model> answer{
@@ -123,8 +181,13 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
   auto job = STRATA_TRY(context.jobs.add(
       project.id,
       [&store = context.store, &memory = context.rooms.memory(), requested = *requested,
-       stored_files = std::move(stored_files),
-       answer](Progress& progress) -> Result<jobs::JobResult> {
+       stored_files = std::move(stored_files), again, folder = context.options.upload_dir,
+       answer](Progress& progress) mutable -> Result<jobs::JobResult> {
+        if (again) {
+          stored_files = STRATA_TRY(fetch_sources(store, *again, folder, progress));
+          for (std::size_t i = 0; i < stored_files.size(); ++i)
+            requested.files[i].path = stored_files[i]->path;
+        }
         store::IdempotentResponse<Model> stored_answer = answer;
         stored_answer.job = progress.job();
         auto model = jobs::import_model(store, requested, progress, stored_answer, &memory);
@@ -160,7 +223,7 @@ void add_import_routes(Router& router, const RouteContext& context) {
        }),
        .role = Role::curator,
        .query = {"name", "project", "unit", "up", "crs", "object", "survey_date", "resolution",
-                 "filename", "weld", "strict"},
+                 "filename", "weld", "cell", "gap", "files_of", "strict"},
        .project_in_query = true,
        .check = [&context](const Request& request) { return check_import(context, request); },
        .body = BodyKind::file,
