@@ -18,6 +18,7 @@ import { toldSurveyDate } from "../domain/surveys";
 import { mayDownload, type Model, type Role } from "../core/types";
 import type { ModelSession } from "../session/model-session";
 import "../features/deposits/citation";
+import "../features/home/points-surface";
 import "../features/surveys/survey-fields";
 import "../ui/dialog";
 import { sharedStyles } from "../ui/styles";
@@ -103,6 +104,12 @@ export class StrataModelDetails extends LitElement {
                 )}
                 ${mayDownload(this.viewer, model) ? nothing : html`<p class="hint">${texts.visibility.no_download}</p>`}
               </dd>`
+            : nothing
+        }
+        ${
+          model.from_points
+            ? html`<dt>${texts.points.heading}</dt>
+                <dd><strata-points-surface .session=${this.session}></strata-points-surface></dd>`
             : nothing
         }
         <dt>${texts.deposit.citation}</dt>

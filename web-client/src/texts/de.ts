@@ -307,10 +307,10 @@ export const texts = {
     import: "Scan importieren",
     into: "Importieren in",
     drop_title: "Zum Importieren ablegen",
-    drop_lead: "PLY, OBJ, STL, glTF oder ZIP, mit zugehörigen Bildern, oder ein Ordner",
+    drop_lead: "PLY, OBJ, STL, glTF, LAS oder ZIP, mit zugehörigen Bildern, oder ein Ordner",
     empty_title: "Noch keine Modelle",
     empty_lead:
-      "Ziehen Sie einen Scan auf diese Seite, oder wählen Sie seine Dateien aus: PLY, OBJ, STL oder glTF, mit Material- und Bilddateien, als Ordner oder ZIP. Er bleibt auf Ihrem eigenen Server.",
+      "Ziehen Sie einen Scan auf diese Seite, oder wählen Sie seine Dateien aus: PLY, OBJ, STL oder glTF, mit Material- und Bilddateien, als Ordner oder ZIP, oder Punkte als PLY oder LAS. Er bleibt auf Ihrem eigenen Server.",
     choose_file: "Datei auswählen",
     open: (name) => `${name} öffnen`,
     options: (name) => `Optionen für ${name}`,
@@ -352,7 +352,7 @@ export const texts = {
     dismiss: (name) => `Hinweis zu ${name} schließen`,
     open: "Öffnen",
     wrong_kind: (name) =>
-      `„${name}“ hat kein unterstütztes Format. Exportieren Sie den Scan als PLY, OBJ, STL, glTF, GLB oder ZIP davon, und legen Sie ihn hier ab.`,
+      `„${name}“ hat kein unterstütztes Format. Exportieren Sie den Scan als PLY, OBJ, STL, glTF, GLB oder ZIP davon, oder Punkte als PLY oder LAS, und legen Sie ihn hier ab.`,
     left_out: (n, name) =>
       n === 1
         ? `„${name}“ wurde ignoriert.`
@@ -841,170 +841,6 @@ export const texts = {
     class_number: (n) => `Klasse ${n}`,
     record_number: (n) => `Datensatz ${n}`,
     no_records: "Jeder Datensatz hat eine eigene Farbe.",
-  },
-
-  shape: {
-    kind: "Was berechnet wird",
-    groups: {
-      form: "Form und Relief",
-      place: "Lage und Richtung",
-      distance: "Abstände",
-      change: "Veränderung zwischen Aufnahmen",
-      sun: "Sonne",
-      rain: "Regen",
-      color: "Farbe",
-      file: "Aus der Datei des Scans",
-    },
-    kinds: {
-      mean_curvature: {
-        title: "Krümmung",
-        lead: "Positiv, wo die Oberfläche konvex ist, negativ, wo sie konkav ist: Werkspuren, Reliefs, verwitterte Inschriften.",
-      },
-      gaussian_curvature: {
-        title: "Gaußsche Krümmung",
-        lead: "Positiv auf Buckeln und in Mulden, negativ auf Sätteln, 0, wo sich die Oberfläche eben abrollen ließe.",
-      },
-      max_curvature: {
-        title: "Grate",
-        lead: "Größte Krümmung aller Richtungen: hoch an Kanten und Graten.",
-      },
-      min_curvature: {
-        title: "Rillen",
-        lead: "Kleinste Krümmung aller Richtungen: niedrig in Rillen, Fugen und Rissen.",
-      },
-      roughness: {
-        title: "Rauheit",
-        lead: "Abstand der Oberfläche zu ihrer Ausgleichsebene: trennt verwitterte von frischen und glatte von bearbeiteten Flächen.",
-      },
-      ambient_occlusion: {
-        title: "Umgebungsverdeckung",
-        lead: "Anteil der Umgebung, der von jeder Stelle aus sichtbar ist: 1 bei freier Sicht, 0 in tiefen Höhlungen.",
-      },
-      height: { title: "Höhe", lead: "Über dem tiefsten Punkt, entlang der Richtung nach oben." },
-      slope: {
-        title: "Neigung",
-        lead: "0° ist waagerecht, 90° ist senkrecht, mehr ist ein Überhang.",
-      },
-      azimuth: {
-        title: "Exposition",
-        lead: "Grad im Uhrzeigersinn von Norden, von oben gesehen.",
-      },
-      boundary_distance: {
-        title: "Abstand zum Rand",
-        lead: "Zur nächsten offenen Kante des Netzes: Rand eines Fragments, ein Loch.",
-      },
-      model_distance: {
-        title: "Abstand zu einem anderen Modell",
-        lead: "Positiv, wo Material hinzukam, negativ, wo es entfernt wurde: zwei Zustände einer Grabung oder eines Objekts.",
-      },
-      change: {
-        title: "Veränderung seit einer anderen Aufnahme",
-        lead: "In Millimetern: positiv, wo Material hinzukam, negativ, wo es entfernt wurde. Das Mittel über einen kleinen Fleck, damit das Rauschen der Scans wenig stört (M3C2).",
-      },
-      significant_change: {
-        title: "Signifikante Veränderung",
-        lead: "Signifikanter Zuwachs, signifikanter Verlust oder keine signifikante Veränderung. Signifikant heißt: größer, als Rauschen und Ausrichtung der Scans erklären. Ohne wirkliche Veränderung werden höchstens etwa 5 % der Oberfläche markiert.",
-      },
-      level_of_detection: {
-        title: "Kleinste erkennbare Veränderung",
-        lead: "In Millimetern. Eine kleinere Veränderung lässt sich nicht vom Rauschen der Scans und vom Fehler ihrer Ausrichtung unterscheiden (Nachweisgrenze, 95 %).",
-      },
-      sun_hours: {
-        title: "Sonnenstunden",
-        lead: "Stunden mit direkter Sonne im Zeitraum, mit den Schatten des Modells selbst. Andere Gebäude, Bäume und Wolken sind nicht berücksichtigt.",
-      },
-      sun_energy: {
-        title: "Sonnenenergie",
-        lead: "Kilowattstunden pro Quadratmeter direkter Sonne bei klarem Himmel im Zeitraum, mit den Schatten des Modells selbst.",
-      },
-      driving_rain: {
-        title: "Schlagregen",
-        lead: "Liter Regen pro Quadratmeter, mit dem Wind, der Neigung der Oberfläche und dem Schutz durch das Modell selbst.",
-      },
-      lightness: {
-        title: "Helligkeit",
-        lead: "Von 0 (schwarz) bis 100 (weiß), von den Farben des Scans oder von einem Oberflächenbild. Für Risse und Fugen, die dunkler als der Stein sind, und für Bilder in UV-Licht oder Infrarot.",
-      },
-      vertex_property: {
-        title: "Werte aus der Datei des Scans",
-        lead: "Eine Zahl, die die Scansoftware für jeden Punkt gespeichert hat: Qualität, Konfidenz, Intensität.",
-      },
-    },
-    lengths: {
-      radius: { label: "Im Umkreis von", hint: "4 Kanten des Netzes" },
-      distance: { label: "Größter Abstand", hint: "je nach Größe des Modells" },
-      registration: {
-        label: "Fehler der Ausrichtung",
-        hint: "0",
-        lead: "Der Standardfehler, den die Ausrichtung der Scans ergeben hat.",
-      },
-      projection: {
-        label: "Mittel über den Durchmesser",
-        hint: "8 Kanten des gröberen Netzes",
-        lead: "Ein größerer Fleck erkennt kleinere Veränderungen, verwischt aber Einzelheiten.",
-      },
-      normal: {
-        label: "Richtung aus dem Durchmesser",
-        hint: "das Doppelte des Mittels",
-        lead: "Die Veränderung wird entlang der mittleren Normale dieses Flecks gemessen.",
-      },
-    },
-    sun: {
-      latitude: {
-        label: "Geografische Breite",
-        hint: "etwa 37,9",
-        lead: "Im Süden negativ.",
-        wrong: "Geben Sie die geografische Breite ein, von -90 bis 90 Grad.",
-      },
-      north: {
-        label: "Norden",
-        hint: "der des Modells",
-        lead: "Im Uhrzeigersinn von der Blickrichtung der Vorderansicht nach Norden, von oben gesehen.",
-        wrong: "Geben Sie die Richtung nach Norden ein, von -360 bis 360 Grad.",
-      },
-      from: "Von Anfang",
-      to: "Bis Ende",
-    },
-    rain: {
-      wind_shares: {
-        label: "Wind bei Regen, aus N, NO, O …",
-        hint: "10 8 6 8 14 28 18 8",
-        lead: "Anteile von 8 oder 16 Richtungen, im Uhrzeigersinn ab Norden, durch Leerzeichen getrennt.",
-        wrong:
-          "Geben Sie 8 oder 16 Zahlen für die Windrichtungen ein, im Uhrzeigersinn ab Norden und durch Leerzeichen getrennt. Keine Zahl darf negativ sein, und eine muss größer als 0 sein.",
-      },
-      wind_speed_m_s: {
-        label: "Windgeschwindigkeit",
-        hint: "etwa 4,5",
-        lead: "Mittelwert bei Regen.",
-        wrong: "Geben Sie die mittlere Windgeschwindigkeit ein, von 0 bis 100 m/s.",
-      },
-      rain_mm: {
-        label: "Regen",
-        hint: "etwa 760",
-        lead: "Eines Jahres, auf ebenem Boden.",
-        wrong: "Geben Sie den Regen eines Jahres ein, von 0,1 bis 100.000 mm.",
-      },
-      rain_mm_per_hour: {
-        label: "Stärke des Regens",
-        hint: "1",
-        lead: "Mittelwert bei Regen.",
-        wrong: "Geben Sie die Stärke des Regens ein, von 0,01 bis 1000 mm pro Stunde.",
-      },
-    },
-    rays: "Strahlen je Punkt",
-    rays_hint: "Mehr Strahlen ergeben glattere Werte und dauern länger",
-    bad_rays: (least, most) =>
-      `Geben Sie für die Strahlen eine ganze Zahl von ${least} bis ${most} ein.`,
-    absolute: "Höhe in Koordinaten der Stätte statt über dem tiefsten Punkt verwenden",
-    model: "Zur Oberfläche von",
-    property: "Eigenschaft",
-    look: "Von",
-    look_visible: "Sichtbare Farben",
-    bad_length: "Geben Sie eine Länge größer als 0 ein, in Millimetern.",
-    model_missing: "Wählen Sie das andere Modell.",
-    property_missing: "Wählen Sie die Eigenschaft.",
-    started: (name) => `„${name}“ wird berechnet.`,
   },
 
   cleanup: {

@@ -302,10 +302,10 @@ export const texts = {
     import: "Importar un escaneo",
     into: "Importar en",
     drop_title: "Suelte para importar",
-    drop_lead: "PLY, OBJ, STL, glTF o zip, con sus imágenes, o una carpeta",
+    drop_lead: "PLY, OBJ, STL, glTF, LAS o zip, con sus imágenes, o una carpeta",
     empty_title: "Todavía no hay modelos",
     empty_lead:
-      "Arrastre un escaneo a esta página o elija sus archivos: PLY, OBJ, STL o glTF, con sus archivos de material e imagen, como carpeta o en un zip. Se queda en su propio servidor.",
+      "Arrastre un escaneo a esta página o elija sus archivos: PLY, OBJ, STL o glTF, con sus archivos de material e imagen, como carpeta o en un zip, o puntos como PLY o LAS. Se queda en su propio servidor.",
     choose_file: "Elegir un archivo",
     open: (name) => `Abrir ${name}`,
     options: (name) => `Opciones de ${name}`,
@@ -345,7 +345,7 @@ export const texts = {
     dismiss: (name) => `Descartar el aviso sobre ${name}`,
     open: "Abrir",
     wrong_kind: (name) =>
-      `El formato de «${name}» no es compatible. Exporte el escaneo como PLY, OBJ, STL, glTF, GLB o un zip de uno de ellos y suéltelo aquí.`,
+      `El formato de «${name}» no es compatible. Exporte el escaneo como PLY, OBJ, STL, glTF, GLB o un zip de uno de ellos, o los puntos como PLY o LAS, y suéltelo aquí.`,
     left_out: (n, name) =>
       n === 1
         ? `Se ha omitido «${name}».`
@@ -831,170 +831,6 @@ export const texts = {
     class_number: (n) => `Clase ${n}`,
     record_number: (n) => `Registro ${n}`,
     no_records: "Cada registro tiene su propio color.",
-  },
-
-  shape: {
-    kind: "Qué se calcula",
-    groups: {
-      form: "Forma y relieve",
-      place: "Posición y dirección",
-      distance: "Distancias",
-      change: "Cambio entre levantamientos",
-      sun: "Sol",
-      rain: "Lluvia",
-      color: "Color",
-      file: "Del archivo del escaneo",
-    },
-    kinds: {
-      mean_curvature: {
-        title: "Curvatura",
-        lead: "Positiva donde la superficie es convexa, negativa donde es cóncava: huellas de herramienta, relieves, letras desgastadas.",
-      },
-      gaussian_curvature: {
-        title: "Curvatura gaussiana",
-        lead: "Positiva en bultos y huecos, negativa en sillas de montar, 0 donde la superficie se podría desenrollar en plano.",
-      },
-      max_curvature: {
-        title: "Crestas",
-        lead: "Curvatura máxima en cualquier dirección: alta en aristas y crestas.",
-      },
-      min_curvature: {
-        title: "Surcos",
-        lead: "Curvatura mínima en cualquier dirección: baja en surcos, juntas y grietas.",
-      },
-      roughness: {
-        title: "Rugosidad",
-        lead: "Distancia de la superficie a su plano de mejor ajuste: distingue lo desgastado de lo fresco, lo liso de lo labrado.",
-      },
-      ambient_occlusion: {
-        title: "Oclusión ambiental",
-        lead: "Qué parte del entorno se ve desde cada punto: 1 si nada la tapa, 0 en cavidades profundas.",
-      },
-      height: { title: "Altura", lead: "Sobre el punto más bajo, según el eje vertical." },
-      slope: {
-        title: "Pendiente",
-        lead: "0° es horizontal, 90° es vertical, más es un voladizo.",
-      },
-      azimuth: {
-        title: "Orientación",
-        lead: "Grados desde el norte en sentido horario, visto desde arriba.",
-      },
-      boundary_distance: {
-        title: "Distancia al borde",
-        lead: "Al borde abierto más próximo de la malla: el contorno de un fragmento, un agujero.",
-      },
-      model_distance: {
-        title: "Distancia a otro modelo",
-        lead: "Positiva donde se añadió material, negativa donde se retiró: dos estados de una misma excavación o de un objeto.",
-      },
-      change: {
-        title: "Cambio desde otro levantamiento",
-        lead: "En milímetros: positivo donde se añadió material, negativo donde se retiró. Es la media de una zona pequeña, para que el ruido de los escaneos influya poco (M3C2).",
-      },
-      significant_change: {
-        title: "Cambio significativo",
-        lead: "Ganancia significativa, pérdida significativa o ningún cambio significativo. Significativo quiere decir que el cambio es mayor de lo que explican el ruido de ambos escaneos y el error de su alineación. Sin ningún cambio real, se marca como máximo cerca del 5 % de la superficie.",
-      },
-      level_of_detection: {
-        title: "Cambio mínimo detectable",
-        lead: "En milímetros. Un cambio menor no se distingue del ruido de los escaneos ni del error de su alineación (nivel de detección, 95 %).",
-      },
-      sun_hours: {
-        title: "Horas de sol",
-        lead: "Horas de sol directo en el periodo, con las sombras del propio modelo. No incluye otros edificios, árboles ni nubes.",
-      },
-      sun_energy: {
-        title: "Energía del sol",
-        lead: "Kilovatios hora por metro cuadrado de sol directo con cielo despejado en el periodo, con las sombras del propio modelo.",
-      },
-      driving_rain: {
-        title: "Lluvia con viento",
-        lead: "Litros de lluvia por metro cuadrado, con el viento, la inclinación de la superficie y el abrigo del propio modelo.",
-      },
-      lightness: {
-        title: "Luminosidad",
-        lead: "De 0 (negro) a 100 (blanco), de los colores del escaneo o de una imagen de superficie. Para grietas y juntas más oscuras que la piedra, y para imágenes en luz UV o infrarrojo.",
-      },
-      vertex_property: {
-        title: "Valores del archivo del escaneo",
-        lead: "Un número que el programa de escaneo guardó para cada punto: calidad, confianza, intensidad.",
-      },
-    },
-    lengths: {
-      radius: { label: "En un radio de", hint: "4 aristas de la malla" },
-      distance: { label: "Distancia máxima", hint: "según el tamaño del modelo" },
-      registration: {
-        label: "Error de la alineación",
-        hint: "0",
-        lead: "El error estándar que indicó la alineación de los escaneos.",
-      },
-      projection: {
-        label: "Media en un diámetro de",
-        hint: "8 aristas de la malla más gruesa",
-        lead: "Una zona mayor detecta cambios menores, pero difumina los detalles.",
-      },
-      normal: {
-        label: "Dirección en un diámetro de",
-        hint: "el doble de la media",
-        lead: "El cambio se mide según la normal media de esta zona.",
-      },
-    },
-    sun: {
-      latitude: {
-        label: "Latitud",
-        hint: "por ejemplo 37,9",
-        lead: "Negativa en el sur.",
-        wrong: "Introduzca la latitud del lugar, de -90 a 90 grados.",
-      },
-      north: {
-        label: "Norte",
-        hint: "el del modelo",
-        lead: "En sentido horario desde la dirección de la vista frontal hacia el norte, visto desde arriba.",
-        wrong: "Introduzca la dirección del norte, de -360 a 360 grados.",
-      },
-      from: "Desde el comienzo de",
-      to: "Hasta el final de",
-    },
-    rain: {
-      wind_shares: {
-        label: "Viento con lluvia, del N, NE, E …",
-        hint: "10 8 6 8 14 28 18 8",
-        lead: "Proporciones de 8 o 16 direcciones, en sentido horario desde el norte, separadas por espacios.",
-        wrong:
-          "Introduzca 8 o 16 números para las direcciones del viento, en sentido horario desde el norte y separados por espacios. Ningún número puede ser negativo, y uno debe ser mayor que 0.",
-      },
-      wind_speed_m_s: {
-        label: "Velocidad del viento",
-        hint: "por ejemplo 4,5",
-        lead: "Media mientras llueve.",
-        wrong: "Introduzca la velocidad media del viento, de 0 a 100 m/s.",
-      },
-      rain_mm: {
-        label: "Lluvia",
-        hint: "por ejemplo 760",
-        lead: "De un año, sobre suelo llano.",
-        wrong: "Introduzca la lluvia de un año, de 0,1 a 100 000 mm.",
-      },
-      rain_mm_per_hour: {
-        label: "Intensidad de la lluvia",
-        hint: "1",
-        lead: "Media mientras llueve.",
-        wrong: "Introduzca la intensidad de la lluvia, de 0,01 a 1000 mm por hora.",
-      },
-    },
-    rays: "Rayos por punto",
-    rays_hint: "Con más rayos, los valores son más suaves y el cálculo tarda más",
-    bad_rays: (least, most) => `Introduzca un número entero de rayos, de ${least} a ${most}.`,
-    absolute:
-      "Usar la cota en coordenadas del yacimiento en lugar de la altura sobre el punto más bajo",
-    model: "A la superficie de",
-    property: "Propiedad",
-    look: "De",
-    look_visible: "Colores visibles",
-    bad_length: "Introduzca una longitud mayor que 0, en milímetros.",
-    model_missing: "Elija el otro modelo.",
-    property_missing: "Elija la propiedad.",
-    started: (name) => `Se está calculando «${name}».`,
   },
 
   cleanup: {

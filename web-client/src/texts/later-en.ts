@@ -1211,4 +1211,195 @@ export const laterTexts = {
     to: "To",
     contains: "Text",
   },
+
+  shape: {
+    kind: "What to compute",
+    groups: {
+      form: "Form and relief",
+      place: "Position and direction",
+      distance: "Distances",
+      change: "Change between surveys",
+      sun: "Sun",
+      rain: "Rain",
+      color: "Color",
+      file: "From the scan's file",
+    },
+    kinds: {
+      mean_curvature: {
+        title: "Curvature",
+        lead: "Positive where the surface is convex, negative where it is concave. Shows tool marks, reliefs and worn letters.",
+      },
+      gaussian_curvature: {
+        title: "Gaussian curvature",
+        lead: "Positive on bumps and hollows, negative on saddles, 0 where the surface could be flattened without stretching.",
+      },
+      max_curvature: {
+        title: "Ridges",
+        lead: "Largest curvature in any direction: high on edges and ridges.",
+      },
+      min_curvature: {
+        title: "Grooves",
+        lead: "Smallest curvature in any direction: low in grooves, joints and cracks.",
+      },
+      roughness: {
+        title: "Roughness",
+        lead: "Distance of the surface from its best-fit plane. Separates worn from fresh surfaces, and smooth from tooled surfaces.",
+      },
+      ambient_occlusion: {
+        title: "Ambient occlusion",
+        lead: "How much of the surroundings is visible from each point: 1 where nothing blocks the view, 0 in deep cavities.",
+      },
+      height: { title: "Height", lead: "Height above the lowest point, along the up direction." },
+      slope: {
+        title: "Slope",
+        lead: "0° is horizontal, 90° is vertical, and larger angles are overhangs.",
+      },
+      azimuth: {
+        title: "Facing direction",
+        lead: "Degrees clockwise from north, seen from above.",
+      },
+      boundary_distance: {
+        title: "Distance to the edge",
+        lead: "Distance to the nearest open edge of the mesh, such as the rim of a fragment or a hole.",
+      },
+      model_distance: {
+        title: "Distance to another model",
+        lead: "Positive where material was added, negative where it was removed. Compares two states of one excavation or object.",
+      },
+      change: {
+        title: "Change since another survey",
+        lead: "In millimeters: positive where material was added, negative where it was removed. The mean over a small patch, so the noise of the scans disturbs it little (M3C2).",
+      },
+      significant_change: {
+        title: "Significant change",
+        lead: "Significant gain, significant loss, or no significant change. Significant means that the change is larger than the noise of both scans and the error of their alignment can explain. Without any real change, at most about 5 % of the surface is marked.",
+      },
+      level_of_detection: {
+        title: "Smallest detectable change",
+        lead: "In millimeters. A smaller change cannot be distinguished from the noise of the scans and the error of their alignment (level of detection, 95 %).",
+      },
+      sun_hours: {
+        title: "Hours of sun",
+        lead: "Hours of direct sun in the period, with the shadows of the model itself. Other buildings, trees and clouds are not included.",
+      },
+      sun_energy: {
+        title: "Energy of the sun",
+        lead: "Kilowatt-hours per square meter of direct sun under a clear sky in the period, with the shadows of the model itself.",
+      },
+      driving_rain: {
+        title: "Driving rain",
+        lead: "Liters of rain per square meter, with the wind, the inclination of the surface and the shelter of the model itself.",
+      },
+      lightness: {
+        title: "Lightness",
+        lead: "From 0 (black) to 100 (white), of the scan's colors or of a surface image. For cracks and joints that are darker than the stone, and for pictures in UV light or infrared.",
+      },
+      vertex_property: {
+        title: "Values from the scan's file",
+        lead: "A number that the scanning software stored for each point, such as quality, confidence or intensity.",
+      },
+    },
+    lengths: {
+      radius: { label: "Within a radius of", hint: "4 edges of the mesh" },
+      distance: { label: "Largest distance", hint: "depends on the model's size" },
+      registration: {
+        label: "Error of the alignment",
+        hint: "0",
+        lead: "The standard error that the alignment of the scans reported.",
+      },
+      projection: {
+        label: "Average over a diameter of",
+        hint: "8 edges of the coarser mesh",
+        lead: "A larger patch detects smaller changes, but blurs details.",
+      },
+      normal: {
+        label: "Direction from a diameter of",
+        hint: "twice the average",
+        lead: "The change is measured along the mean normal of this patch.",
+      },
+    },
+    sun: {
+      latitude: {
+        label: "Latitude",
+        hint: "such as 37.9",
+        lead: "Negative in the south.",
+        wrong: "Enter the latitude of the site, from -90 to 90 degrees.",
+      },
+      north: {
+        label: "North",
+        hint: "that of the model",
+        lead: "Clockwise from the view of the front to north, seen from above.",
+        wrong: "Enter the direction of north, from -360 to 360 degrees.",
+      },
+      from: "From the start of",
+      to: "To the end of",
+    },
+    rain: {
+      wind_shares: {
+        label: "Wind while it rains, from N, NE, E …",
+        hint: "10 8 6 8 14 28 18 8",
+        lead: "Shares of 8 or 16 directions, clockwise from north, separated by spaces.",
+        wrong:
+          "Enter 8 or 16 numbers for the directions of the wind, clockwise from north, separated by spaces. No number can be negative, and one must be larger than 0.",
+      },
+      wind_speed_m_s: {
+        label: "Speed of the wind",
+        hint: "such as 4.5",
+        lead: "Mean while it rains.",
+        wrong: "Enter the mean speed of the wind, from 0 to 100 m/s.",
+      },
+      rain_mm: {
+        label: "Rain",
+        hint: "such as 760",
+        lead: "Of a year, on level ground.",
+        wrong: "Enter the rain of a year, from 0.1 to 100,000 mm.",
+      },
+      rain_mm_per_hour: {
+        label: "Intensity of the rain",
+        hint: "1",
+        lead: "Mean while it rains.",
+        wrong: "Enter the intensity of the rain, from 0.01 to 1000 mm per hour.",
+      },
+    },
+    rays: "Rays per point",
+    rays_hint: "More rays give smoother values and take longer",
+    bad_rays: (least: number, most: number) =>
+      `Enter a whole number of rays from ${least} to ${most}.`,
+    absolute: "Use the elevation in site coordinates instead of the height above the lowest point",
+    model: "To the surface of",
+    property: "Property",
+    look: "Of",
+    look_visible: "The visible colors",
+    bad_length: "Enter a length larger than 0, in millimeters.",
+    model_missing: "Choose the other model.",
+    property_missing: "Choose the property.",
+    started: (name: string) => `“${name}” is being computed.`,
+  },
+
+  points: {
+    heading: "Surface from points",
+    made: (points: string, spacing: string) =>
+      `Made from ${points} points, which are about ${spacing} apart.`,
+    thinned: (used: string) => `${used} of them were used.`,
+    near: (median: string, most: string) =>
+      `Half of the points are within ${median} of the surface, 95 % within ${most}.`,
+    again: "Create the surface again…",
+    lengths: {
+      cell: {
+        label: "Longest edge of the finest triangles",
+        hint: "Shorter edges show more details. Edges shorter than the distance between points only show noise.",
+      },
+      gap: {
+        label: "Close gaps up to",
+        hint: "Wider places without points stay open.",
+      },
+    },
+    start: "Create again",
+    running: "Creating the surface…",
+    wrong: "Enter a length that is larger than 0.",
+    result:
+      "The result is a new model from the same file. This model moves to the Trash if it has no layers, and stays otherwise.",
+    done: "This is the new surface.",
+    old_stays: (name: string) => `The earlier model “${name}” has layers, so it stays.`,
+  },
 } as const;

@@ -25,7 +25,7 @@ export interface ImportEntry {
   mayRepeat: boolean;
 }
 
-const kScans = /\.(ply|obj|stl|gltf|glb|zip)$/i;
+const kScans = /\.(ply|obj|stl|gltf|glb|las|zip)$/i;
 // materials, buffers and images that a mesh may refer to
 const kCompanions = /\.(mtl|bin|png|jpe?g|tiff?|webp|bmp|tga)$/i;
 

@@ -19,6 +19,7 @@ import { radioGroup } from "../../ui/radio-group";
 import { sharedStyles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
+import "./points-surface";
 
 @customElement("strata-scale-dialog")
 export class StrataScaleDialog extends LitElement {
@@ -160,6 +161,14 @@ export class StrataScaleDialog extends LitElement {
         <small>${words.north_lead}</small>
         ${this._northWrong ? html`<span class="error" role="alert" id="north-wrong">${texts.shape.sun.north.wrong}</span>` : nothing}
       </label>
+      ${
+        model.from_points
+          ? html`<div class="question" role="group" aria-labelledby="points">
+              <span class="caption" id="points">${texts.points.heading}</span>
+              <strata-points-surface .session=${this.session} changeable></strata-points-surface>
+            </div>`
+          : nothing
+      }
       ${model.scale_verified ? nothing : html`<p class="hint">${words.until_then(words[model.unit], upName(model.up))}</p>`}
       <button slot="actions" class="primary" ?disabled=${this._busy} @click=${() => void this.confirm()}>${words.yes}</button>
     </strata-dialog>`;
