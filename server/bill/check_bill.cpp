@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <vector>
 
 #include "bill/exact_number.h"
 #include "bill/formula.h"
@@ -66,9 +67,22 @@ Result<void> check_measure(const BillItem& item, const BillRule& rule, const std
     return fail(ErrorCode::invalid, "Nothing is deducted",
                 "`overmeasured_up_to` has an effect only with `deduct`.",
                 field + ".overmeasured_up_to");
-  if (rule.size && rule.size->of == protocol::BillSizeOf::length && !rule.table)
-    return fail(ErrorCode::invalid, "No lines",
-                "Only records have lines. Choose size classes by area.", field + ".size.of");
+  // The element of a layer is a class, whose size is the sum of all its pieces.
+  if (rule.size && !rule.table)
+    return fail(ErrorCode::invalid, "Sizes of classes",
+                "Size classes need single elements, so the rule needs a `table`. Make records of "
+                "the pieces of the layer first.",
+                field + ".size");
+  if (rule.overmeasured_up_to && !rule.table)
+    return fail(ErrorCode::invalid, "Sizes of classes",
+                "Openings are compared one by one, so the rule needs a `table`. Make records of "
+                "the pieces of the layer first.",
+                field + ".overmeasured_up_to");
+  if (item.rounding && item.rounding->smallest && !rule.table)
+    return fail(ErrorCode::invalid, "Sizes of classes",
+                "A smallest size needs single elements, so the rule needs a `table`. Make records "
+                "of the pieces of the layer first.",
+                field + ".table");
   if (rule.size && rule.measure == Measure::length && rule.size->of != protocol::BillSizeOf::length)
     return fail(ErrorCode::invalid, "Lines have no area",
                 "A rule that measures lengths needs size classes `of` length.", field + ".size.of");
@@ -136,23 +150,37 @@ Result<void> check_bill(const protocol::BillWrite& bill) {
 void sign_measurements(protocol::BillWrite& bill, const protocol::BillWrite& before,
                        const std::string& user, const std::string& time) {
   using Content = std::tuple<std::string, std::string, std::string, std::string, std::string>;
-  const auto content = [](const BillItem& item, const protocol::HandMeasurement& line) {
-    return Content{item.number, line.text, line.formula, line.replaces.value_or(""), line.remark};
+  const auto content = [](const std::string& number, const protocol::HandMeasurement& line) {
+    return Content{number, line.text, line.formula, line.replaces.value_or(""), line.remark};
   };
   std::multimap<Content, const protocol::HandMeasurement*> signed_lines;
   for (const BillItem& item : items_of(before))
-    for (const auto& line : measurements_of(item)) signed_lines.emplace(content(item, line), &line);
+    for (const auto& line : measurements_of(item))
+      signed_lines.emplace(content(item.number, line), &line);
   if (!bill.items) return;
+  std::vector<protocol::HandMeasurement*> moved;
+  const auto sign = [&](protocol::HandMeasurement& line, const Content& key) {
+    const auto known = signed_lines.find(key);
+    if (known == signed_lines.end()) return false;
+    line.user = known->second->user;
+    line.time = known->second->time;
+    signed_lines.erase(known);
+    return true;
+  };
   for (BillItem& item : *bill.items) {
     if (!item.measurements) continue;
-    for (auto& line : *item.measurements) {
-      const auto known = signed_lines.find(content(item, line));
-      const bool is_known = known != signed_lines.end();
-      line.user = is_known ? known->second->user : user;
-      line.time = is_known ? known->second->time : time;
-      if (is_known) signed_lines.erase(known);
-    }
+    for (auto& line : *item.measurements)
+      if (!sign(line, content(item.number, line))) moved.push_back(&line);
   }
+  // The same lines under other numbers: their positions were numbered again.
+  std::multimap<Content, const protocol::HandMeasurement*> rest;
+  for (const auto& [key, line] : signed_lines) rest.emplace(content("", *line), line);
+  signed_lines = std::move(rest);
+  for (protocol::HandMeasurement* line : moved)
+    if (!sign(*line, content("", *line))) {
+      line->user = user;
+      line->time = time;
+    }
 }
 
 }  // namespace strata::bill

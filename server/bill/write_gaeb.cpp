@@ -70,6 +70,8 @@ class Writer {
   }
 
  private:
+  bool has_texts() const { return phase_ == GaebPhase::x83 || phase_ == GaebPhase::x86; }
+
   // GAEB numbers each level with the same number of characters, and has positions only on the
   // lowest level.
   Result<void> find_levels() {
@@ -166,9 +168,16 @@ class Writer {
         pugi::xml_node group = parent.append_child("BoQCtgy");
         group.append_attribute("ID") = ("C" + std::to_string(i + 1)).c_str();
         group.append_attribute("RNoPart") = part.c_str();
-        if (phase_ == GaebPhase::x83 || phase_ == GaebPhase::x86)
-          add_paragraphs(group.append_child("LblTx"), item.short_text);
-        bodies[item.number] = group.append_child("BoQBody");
+        if (has_texts()) add_paragraphs(group.append_child("LblTx"), item.short_text);
+        pugi::xml_node inner = group.append_child("BoQBody");
+        if (has_texts() && !item.long_text.empty())
+          add_paragraphs(inner.append_child("Remark")
+                             .append_child("Description")
+                             .append_child("CompleteText")
+                             .append_child("DetailTxt")
+                             .append_child("Text"),
+                         item.long_text);
+        bodies[item.number] = inner;
         continue;
       }
       pugi::xml_node list = parent.child("Itemlist");
@@ -198,6 +207,17 @@ class Writer {
         "format");
   }
 
+  // A rounded number in the file would differ from the bill, and the receiver would compute other
+  // totals.
+  static Result<void> check_places(const BillItem& item, const ExactNumber& number, int places,
+                                   const std::string& what) {
+    if (number == number.rounded(places)) return {};
+    return fail(ErrorCode::invalid, "Too many decimal places for GAEB",
+                "GAEB allows " + std::to_string(places) + " decimal places, but the " + what +
+                    " of position `" + item.number + "` has more. Round it, or use XLSX.",
+                "format");
+  }
+
   Result<void> add_position(pugi::xml_node node, const BillItem& item, const Position& position) {
     if (item.unit.empty())
       return fail(ErrorCode::invalid, "Unit missing",
@@ -212,11 +232,13 @@ class Writer {
     const ExactNumber quantity =
         is_tendered ? *ExactNumber::parse(*item.quantity) : position.quantity;
     STRATA_TRY(check_range(item, quantity, 100'000'000));
+    STRATA_TRY(check_places(item, quantity, kQuantityPlaces, "quantity"));
     add(node, "Qty", quantity.text(kQuantityPlaces));
     add(node, "QU", cut(item.unit, 4));
     if (has_prices) {
       const ExactNumber price = *ExactNumber::parse(*item.unit_price);
-      const ExactNumber total = quantity.rounded(kQuantityPlaces) * price;
+      STRATA_TRY(check_places(item, price, kPricePlaces, "unit price"));
+      const ExactNumber total = quantity * price;
       STRATA_TRY(check_range(item, total, 10'000'000'000));
       add(node, "UP", price.text(kPricePlaces));
       add(node, "IT", total.text(kPricePlaces));
@@ -233,6 +255,7 @@ class Writer {
 
   Result<void> add_proof(pugi::xml_node node, const BillItem& item, const Position& position) {
     STRATA_TRY(check_range(item, position.quantity, 100'000'000));
+    STRATA_TRY(check_places(item, position.quantity, kQuantityPlaces, "quantity"));
     pugi::xml_node proof = node.append_child("QtyDeterm");
     add(proof, "Qty", position.quantity.text(kQuantityPlaces));
     for (const Line& line : position.lines) {

@@ -32,12 +32,18 @@ using bill::ExactNumber;
 using Measure = protocol::BillRuleMeasure;
 using KeyAreas = std::map<std::int64_t, query::KeyArea>;
 
+constexpr std::size_t kKeptConditions = 16;
+
+}  // namespace
+
 // The records of a rule.
 struct ChosenRecords {
   Table table;
   std::vector<Record> records;  // sorted by key
   RecordNames names;
 };
+
+namespace {
 
 void place_at(Element& element, const Model& model) {
   element.model = model.id.number();
@@ -51,8 +57,9 @@ void place_at(Element& element, const Model& model) {
 struct BillElements::Cache {
   const Services& services;
   const BillSource source;
-  std::map<ModelId, Model> models;
-  std::map<LayerId, KeyAreas> areas;
+  std::map<ModelId, Model> models{};
+  std::map<LayerId, KeyAreas> areas{};
+  std::map<std::pair<std::int64_t, std::string>, ChosenRecords> records{};  // by table and `where`
 
   Result<void> load_models() {
     if (!models.empty()) return {};
@@ -184,10 +191,12 @@ class RecordElements {
 
   Result<void> add_painted() {
     const bool sizes_lengths = rule_.size && rule_.size->of == protocol::BillSizeOf::length;
+    bool has_layer = false;
     for (const Layer& layer : STRATA_TRY(
              cache_.services.store.layers().of_table(chosen_.table.id, cache_.source.seen_by))) {
       if (rule_.model && layer.model_id != ModelId(*rule_.model)) continue;
       if (rule_.layer && layer.id != LayerId(*rule_.layer)) continue;
+      has_layer = true;
       const Model* model = STRATA_TRY(cache_.model(layer.model_id));
       const KeyAreas* areas = STRATA_TRY(cache_.areas_of(layer));
       for (const auto& [key, area] : *areas) {
@@ -211,6 +220,9 @@ class RecordElements {
         STRATA_TRY(check_count(elements_.size()));
       }
     }
+    // Without this, the quantity would be 0 after the layer is deleted.
+    if (rule_.layer && !has_layer)
+      return no_such_source("layer " + std::to_string(*rule_.layer), "layer");
     return {};
   }
 
@@ -244,20 +256,30 @@ class RecordElements {
 }  // namespace
 
 BillElements::BillElements(const Services& services, BillSource source)
-    : cache_(new Cache{services, std::move(source), {}, {}}) {}
+    : cache_(new Cache{services, std::move(source)}) {}
 BillElements::~BillElements() = default;
 
 Result<std::vector<Element>> BillElements::of(const protocol::BillRule& rule) {
   STRATA_TRY(cache_->load_models());
   if (rule.model) STRATA_TRY(cache_->model(ModelId(*rule.model)));
+  check_question();
   if (!rule.table) return of_layer(rule);
-  const ChosenRecords chosen = STRATA_TRY(chosen_records(cache_->services, cache_->source, rule));
+  const std::pair key(*rule.table, rule.where.value_or(""));
+  auto known = cache_->records.find(key);
+  if (known == cache_->records.end()) {
+    auto fresh = STRATA_TRY(chosen_records(cache_->services, cache_->source, rule));
+    // Most bills have few conditions. The others are read again, so that memory stays bounded.
+    if (cache_->records.size() >= kKeptConditions) cache_->records.clear();
+    known = cache_->records.emplace(key, std::move(fresh)).first;
+  }
+  const ChosenRecords& chosen = known->second;
   const auto depths = STRATA_TRY(BillDepths::of(rule, &chosen.table));
   return RecordElements(*cache_, rule, chosen, depths).read();
 }
 
 Result<std::vector<Element>> BillElements::of_layer(const protocol::BillRule& rule) {
-  const auto& [services, source, models, areas] = *cache_;
+  const Services& services = cache_->services;
+  const BillSource& source = cache_->source;
   const Model* model = STRATA_TRY(cache_->model(ModelId(*rule.model)));
   const auto layer = STRATA_TRY(
       of_rule(services.store.layers().find(model->id, std::to_string(*rule.layer), source.seen_by),
@@ -287,9 +309,12 @@ Result<std::vector<Element>> BillElements::of_layer(const protocol::BillRule& ru
     element.layer = layer.id.number();
     element.layer_name = layer.name;
     element.title = quantity_text(quantity, quantity_label(quantity, layer, {}));
+    const auto limit = [](const std::optional<double>& value) {
+      return value ? ExactNumber::measured(*value).short_text() : std::string("…");
+    };
     element.id = "layer " + to_string(layer.id) + " class " +
-                 (quantity.value ? ExactNumber::measured(*quantity.value).short_text()
-                                 : element.title.substr(0, 60));
+                 (quantity.value ? limit(quantity.value)
+                                 : limit(quantity.from) + " to " + limit(quantity.to));
     element.size = element.measured = ExactNumber::measured(quantity.area_m2);
     if (rule.measure == Measure::count)
       element.measured = ExactNumber(static_cast<std::int64_t>(quantity.pieces));

@@ -76,7 +76,8 @@ class BillSheets {
   Result<std::shared_ptr<const TemporaryFile>> finish(const MeasuredBill& measured) {
     if (book_) {
       text(bill_, bill_row_, 1, "Total (" + measured.bill.currency + ")", bold_);
-      const std::string sum = "SUM(H2:H" + std::to_string(std::max(bill_row_, lxw_row_t{2})) + ")";
+      // The rows of the positions are 2 to bill_row_. An empty bill has none.
+      const std::string sum = bill_row_ < 2 ? "0" : "SUM(H2:H" + std::to_string(bill_row_) + ")";
       formula(bill_, bill_row_, 7, sum, measured.total);
       note(workbook_close(book_));
     }

@@ -137,6 +137,18 @@ def bill(server, ids):
 
 
 @pytest.fixture(scope="module")
+def gaeb_bill(server, bill):
+    """The same bill with at most the 3 decimal places that GAEB allows."""
+    items = server.get(bill).json()["items"]
+    for item in items:
+        rounding = item.get("rounding", {})
+        if rounding.get("places", 2) > 3:
+            item["rounding"] = {**rounding, "places": 3}
+    made = server.ok("POST", BILLS, {"name": "Facade for GAEB", "items": items}).json()
+    return f"{BILLS}/{made['id']}"
+
+
+@pytest.fixture(scope="module")
 def measured(server, bill):
     answer = server.ok("GET", bill + "/quantities").json()
     return {each["number"]: each for each in answer["positions"]}, answer
@@ -332,15 +344,21 @@ def test_the_workbook_has_formulas_that_give_the_quantities(server, bill):
     assert "North" in titles and "Soot" in titles
 
 
-def test_x31_contains_the_proof_of_the_quantities(server, bill):
-    answer = server.ok("GET", bill + "/quantities").json()
-    file = server.ok("GET", bill + "/file?f=x31")
+def test_gaeb_refuses_more_decimal_places_than_it_has(server, bill):
+    for phase in ("x31", "x83"):
+        refused = server.request("GET", f"{bill}/file?f={phase}")
+        assert refused.status == 422 and "3 decimal places" in refused.json()["detail"], refused
+
+
+def test_x31_contains_the_proof_of_the_quantities(server, gaeb_bill):
+    answer = server.ok("GET", gaeb_bill + "/quantities").json()
+    file = server.ok("GET", gaeb_bill + "/file?f=x31")
     root = xml.fromstring(file.body)
     items = {each.get("RNoPart"): each for each in root.iter(DA31 + "Item")}
     assert root.find(f"{DA31}QtyDeterm/{DA31}DP").text == "31"
     for each in answer["positions"]:
         proof = items[each["number"].split(".")[1]].find(DA31 + "QtyDeterm")
-        assert Decimal(proof.find(DA31 + "Qty").text) == rounded(each["quantity"], "0.001")
+        assert Decimal(proof.find(DA31 + "Qty").text) == Decimal(each["quantity"])
         rows = [row.get("Row") for row in proof.iter(DA31 + "QTakeoff")]
         assert all(len(row) == 80 for row in rows), rows
         terms = [row[33:68].strip() for row in rows if row[29:31] == "91"]
@@ -355,8 +373,8 @@ def test_x31_contains_the_proof_of_the_quantities(server, bill):
     )
 
 
-def test_a_tender_is_exported_and_imported(server, bill):
-    file = server.ok("GET", bill + "/file?f=x83")
+def test_a_tender_is_exported_and_imported(server, bill, gaeb_bill):
+    file = server.ok("GET", gaeb_bill + "/file?f=x83")
     made = server.ok(
         "POST", BILLS + "/gaeb?name=Back", file.body, headers={"Content-Type": "application/xml"}
     )
@@ -368,8 +386,8 @@ def test_a_tender_is_exported_and_imported(server, bill):
         (each["number"], each.get("unit", "")) for each in before
     ]
     listed = server.get(BILLS).json()
-    assert listed["total"] == 2 and [each["positions"] for each in listed["bills"]] == [8, 8]
-    refused = server.request("GET", bill + "/file?f=x84")
+    assert listed["total"] == 3 and [each["positions"] for each in listed["bills"]] == [8] * 3
+    refused = server.request("GET", gaeb_bill + "/file?f=x84")
     assert refused.status == 422 and refused.json()["field"] == "f", refused
     assert server.request("GET", bill + "/file?f=d83").status in (400, 406)
 

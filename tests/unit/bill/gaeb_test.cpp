@@ -1,5 +1,6 @@
 #include "bill/gaeb.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <pugixml.hpp>
@@ -145,7 +146,7 @@ std::vector<std::string> children(pugi::xml_node node) {
 TEST(WriteGaeb, has_the_elements_of_each_phase_in_the_order_of_the_schema) {
   protocol::BillWrite bill = tender().bill;
   for (auto& item : *bill.items)
-    if (item.kind == protocol::BillItemKind::position) item.unit_price = "2.005";
+    if (item.kind == protocol::BillItemKind::position) item.unit_price = "2.05";
   const auto root = [&](pugi::xml_document& document, GaebPhase phase) {
     EXPECT_TRUE(document.load_string(written(bill, phase).c_str()));
     return document.document_element();
@@ -167,13 +168,41 @@ TEST(WriteGaeb, has_the_elements_of_each_phase_in_the_order_of_the_schema) {
   gaeb = root(document, GaebPhase::x84);
   item = gaeb.first_element_by_path("Award/BoQ/BoQBody/BoQCtgy/BoQBody/Itemlist/Item");
   EXPECT_EQ(children(item), (Names{"Qty", "QU", "UP", "IT"}));
-  EXPECT_STREQ(item.child_value("IT"), "241.60");  // 120.5 * 2.005 = 241.6025
+  EXPECT_STREQ(item.child_value("IT"), "247.03");  // 120.5 * 2.05 = 247.025
 
   gaeb = root(document, GaebPhase::x31);
   EXPECT_EQ(children(gaeb), (Names{"GAEBInfo", "QtyDeterm"}));
   EXPECT_EQ(children(gaeb.child("QtyDeterm")), (Names{"PrjInfo", "QtyDetermInfo", "DP", "BoQ"}));
   EXPECT_EQ(children(gaeb.child("QtyDeterm").child("BoQ")),
             (Names{"RefBoQName", "BoQBkdn", "BoQBkdn", "BoQBody"}));
+}
+
+// Rounded, the receiver would compute other totals than the bill has.
+TEST(WriteGaeb, numbers_with_more_places_than_gaeb_allows_are_refused) {
+  protocol::BillWrite bill = tender().bill;
+  bill::GaebFacts facts{};
+  for (auto& item : *bill.items)
+    if (item.kind == protocol::BillItemKind::position) item.unit_price = "0.125";
+  std::vector<bill::Position> positions(bill.items->size());
+  const auto bid = write_gaeb(bill, positions, GaebPhase::x84, facts);
+  ASSERT_FALSE(bid);
+  EXPECT_THAT(bid.error().detail, testing::HasSubstr("unit price of position"));
+  for (auto& item : *bill.items)
+    if (item.kind == protocol::BillItemKind::position) item.unit_price = "1000";
+  for (auto& each : positions) each.quantity = *bill::ExactNumber::parse("1.2345");
+  for (const GaebPhase phase : {GaebPhase::x31, GaebPhase::x86}) {
+    const auto contract = write_gaeb(bill, positions, phase, facts);
+    ASSERT_FALSE(contract);
+    EXPECT_THAT(contract.error().detail, testing::HasSubstr("quantity of position"));
+  }
+}
+
+TEST(WriteGaeb, notes_of_groups_come_back) {
+  protocol::BillWrite bill = tender().bill;
+  bill.items->front().long_text = "Preamble.\n\nScaffold by others.";
+  const auto again = read_gaeb(written(bill, GaebPhase::x83));
+  ASSERT_TRUE(again) << again.error().detail;
+  EXPECT_EQ(items_of(again->bill).front().long_text, "Preamble.\nScaffold by others.");
 }
 
 TEST(WriteGaeb, proof_lines_are_rows_of_80_characters) {

@@ -51,10 +51,10 @@ std::string members_of(const nlohmann::json& node) {
 
 // Returns the text of a node without an address: "Surface: 0.25 m²".
 std::string text_of_blank(const nlohmann::json& node) {
-  std::string text = node.value("_label", std::string());
+  std::string text = escaped_markup(node.value("_label", std::string()));
   for (const char* member : {"content", "value"})
     if (const auto found = node.find(member); found != node.end())
-      text = (text.empty() ? text : escaped_markup(text) + ": ") + shown_text(*found);
+      text = (text.empty() ? text : text + ": ") + shown_text(*found);
   if (const auto unit = node.find("unit"); unit != node.end())
     text += " " + escaped_markup(unit->value("_label", std::string()));
   return text;

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <string_view>
+#include <unordered_map>
 
 #include "app/layers/layer_features.h"
 #include "app/maps/gis_plane.h"
@@ -42,6 +44,17 @@ void turn_to_world(std::vector<query::FlatPolygon>& geometry, const query::Outli
       }
 }
 
+// Features without an outline take that of the feature with the same id.
+void take_outlines(std::vector<app::Feature>& features, std::vector<app::Feature>& others) {
+  std::unordered_map<std::string_view, app::Feature*> by_id;
+  for (app::Feature& other : others) by_id.emplace(other.id, &other);
+  for (app::Feature& feature : features) {
+    if (!feature.geometry.empty()) continue;
+    const auto other = by_id.find(feature.id);
+    if (other != by_id.end()) feature.geometry = std::move(other->second->geometry);
+  }
+}
+
 struct LayerAnnotations {
   Model model;
   Layer layer;
@@ -67,10 +80,7 @@ Result<LayerAnnotations> annotations_in(const RouteContext& context, const Reque
     if (is_first)
       found.tables = std::move(set.tables);
     else
-      for (app::Feature& other : set.tables.front().features)
-        for (app::Feature& feature : found.tables.front().features)
-          if (feature.id == other.id && is_flat(feature))
-            feature.geometry = std::move(other.geometry);
+      take_outlines(found.tables.front().features, set.tables.front().features);
     if (std::ranges::none_of(found.tables.front().features, is_flat)) break;
   }
   return found;
