@@ -5,6 +5,7 @@
 
 #include "app/deposit/import_deposit.h"
 #include "app/deposit/read_bag.h"
+#include "cli/cancel_by_signal.h"
 #include "cli/commands.h"
 #include "cli/open_database.h"
 #include "cli/progress_line.h"
@@ -58,6 +59,8 @@ void print(const app::ImportedDeposit& made) {
 
 Result<void> run(const DepositOptions& options) {
   Progress progress;
+  // A cancelled import deletes what it has made.
+  const CancelBySignal signals(progress);
   const auto bag = [&] {
     const ProgressLine line(progress);
     return open_bag(options.deposit, progress);

@@ -1,10 +1,7 @@
 // `strata upgrade-database` changes the private database to a newer major version of PostgreSQL.
-#include <signal.h>
-
-#include <atomic>
 #include <iostream>
-#include <thread>
 
+#include "cli/cancel_by_signal.h"
 #include "cli/commands.h"
 #include "cli/open_database.h"
 #include "cli/progress_line.h"
@@ -19,35 +16,6 @@ using Method = store::UpgradePlan::Method;
 struct UpgradeOptions {
   DataOptions data;
   bool apply = false, rehearse = false, dump = false;
-};
-
-// Cancels the work on SIGTERM, SIGINT and SIGHUP, so that it can stop its programs and delete its
-// folder. The threads of the work inherit the signal mask, so create this object first.
-class CancelBySignal {
- public:
-  explicit CancelBySignal(Progress& progress) {
-    sigset_t ending;
-    sigemptyset(&ending);
-    for (const int number : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&ending, number);
-    pthread_sigmask(SIG_BLOCK, &ending, &before_);
-    thread_ = std::thread([this, ending, &progress] {
-      const timespec pause{0, 100'000'000};
-      while (!done_)
-        if (sigtimedwait(&ending, nullptr, &pause) > 0) progress.cancel();
-    });
-  }
-  ~CancelBySignal() {
-    done_ = true;
-    thread_.join();
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-  CancelBySignal(const CancelBySignal&) = delete;
-  CancelBySignal& operator=(const CancelBySignal&) = delete;
-
- private:
-  sigset_t before_{};
-  std::atomic<bool> done_{false};
-  std::thread thread_;
 };
 
 std::string megabytes(std::uintmax_t bytes) {

@@ -225,7 +225,8 @@ class ModelDeposit {
 
   Result<nlohmann::json> parts_of(store::NamedParts& parts) {
     nlohmann::json list = nlohmann::json::array();
-    const auto page = STRATA_TRY(parts.of_model(model_.id, kPage, 0, 0, from_.reader.user));
+    // Deposits are published, so they do not contain the personal selections of their maker.
+    const auto page = STRATA_TRY(parts.of_model(model_.id, kPage, 0, 0, {}));
     for (const store::NamedPart& part : page.parts) list.push_back(crate::to_crate(part));
     return list;
   }

@@ -190,6 +190,11 @@ Result<ImportedDeposit> import_deposit(store::Store& store, const fs::path& bag,
     done = damaged("project.json or model.json", std::string("has another form: ") + error.what());
   } catch (const std::out_of_range&) {
     done = damaged("project.json or model.json", "names a part that it does not contain");
+  } catch (const std::bad_alloc&) {
+    done = fail(ErrorCode::out_of_memory, "Not enough memory",
+                "The deposit needs more memory than the machine has.");
+  } catch (const std::exception& error) {
+    done = fail(ErrorCode::internal, "Deposit not imported", error.what());
   }
   if (done) return made;
   if (has_project) remove_all(store, made.project);

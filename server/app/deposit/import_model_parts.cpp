@@ -5,6 +5,7 @@
 #include "app/deposit/crate_json.h"
 #include "app/deposit/import_parts.h"
 #include "media/media_type.h"
+#include "protocol/parse.h"
 #include "store/content/comments.h"
 #include "store/content/named_parts.h"
 #include "store/content/tour_files.h"
@@ -62,9 +63,19 @@ class PartImport {
     return part;
   }
 
+  // A view that the server itself would not accept would break the lists of views.
+  static Result<void> check_view(const store::NamedPart& view) {
+    json body{{"name", view.name}, {"camera", view.content.at("camera")}};
+    if (const auto light = view.content.find("light"); light != view.content.end())
+      body["light"] = *light;
+    STRATA_TRY(protocol::from_json<protocol::ViewCreate>(body));
+    return {};
+  }
+
   Result<void> add_views() {
     for (const json& each : all_.at("views")) {
       store::NamedPart view = part_of(each);
+      STRATA_TRY(check_view(view));
       replace_ids(view.content, "layers", "layer", ids_.layers);
       replace_ids(view.content, "looks", "look", ids_.images);
       const auto made = STRATA_TRY(store_.views().create(view));

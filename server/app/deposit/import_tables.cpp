@@ -122,6 +122,10 @@ class RecordImport {
         return refused("Line " + std::to_string(rows->mistakes.front().line) + " of " +
                            path.get<std::string>(),
                        rows->mistakes.front().problem);
+      for (const store::RecordInput& record : rows->records)
+        if (!record.key)
+          return fail(ErrorCode::invalid, "Deposit damaged",
+                      path.get<std::string>() + " has a row without a key.");
       if (import_.progress.cancelled()) return cancelled_problem();
       if (!rows->records.empty()) STRATA_TRY(work(std::move(rows->records)));
     }

@@ -3,6 +3,7 @@ of a deposit as a new project. Damaged deposits are refused."""
 import io
 import json
 import os
+import pathlib
 import random
 import shutil
 import struct
@@ -200,6 +201,10 @@ def make_parts(server):
         M + "/comments",
         {"text": "Look here", "position": POINT, "layer": "shift"},
     )
+
+    for name, audience in (("Secret places", "personal"), ("Damp walls", "everyone")):
+        body = {"name": name, "audience": audience, "within": {"where": "z > 0"}}
+        server.ok("POST", M + "/selections", body)
 
 
 @pytest.fixture(scope="module")
@@ -557,3 +562,12 @@ def sign(bag):
     for name in tags:
         rewrite(bag, name, files[name])
     rewrite(bag, "tagmanifest-sha256.txt", lines(tags).encode())
+
+
+def test_a_deposit_has_no_personal_selections(bag):
+    names = [
+        each["name"]
+        for file in pathlib.Path(bag).glob("data/models/*/model.json")
+        for each in json.loads(file.read_text())["selections"]
+    ]
+    assert names == ["Damp walls"]
