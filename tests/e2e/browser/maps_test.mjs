@@ -30,7 +30,7 @@ const shot = async (name) => {
 };
 async function open_dialog(name) {
   await button(`Options for ${name}`).click();
-  await page.getByRole("menuitem", { name: words.maps.menu }).click();
+  await page.getByRole("menuitem", { name: words.layers.paint_file }).click();
 }
 async function give(...names) {
   await dialog.locator("input[type=file]").setInputFiles(names.map(file));

@@ -280,7 +280,7 @@ test("a table of numbers for the vertices of the scan is painted", async () => {
     "the layer to be unlocked",
   );
   await button(words.layers.options("quality")).click();
-  await page.getByRole("menuitem", { name: words.maps.menu }).click();
+  await page.getByRole("menuitem", { name: words.layers.paint_file }).click();
   await page.locator("strata-map-dialog input[type=file]").setInputFiles({
     name: "tenfold.csv",
     mimeType: "text/csv",

@@ -111,7 +111,7 @@ function ofSelectedLayer(host: PageHost): Command[] {
     open("chart", texts.layers.statistics, "statistics"),
     ...(canBeColored(layer) ? [open("palette", texts.colors.open, "colors")] : []),
     open("formula", texts.areas.where, "where", painting),
-    open("upload", texts.maps.menu, "map", painting),
+    open("upload", texts.layers.paint_file, "map", painting),
     open("eraser", texts.cleanup.open, "cleanup", painting),
     open("table", texts.cleanup.open_pieces, "pieces", changeProblem(session)),
     ...(session.canCurate ? [open("edit", texts.layers.edit, "edit")] : []),

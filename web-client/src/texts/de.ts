@@ -652,82 +652,6 @@ export const texts = {
     apply_erase: "Radieren",
   },
 
-  maps: {
-    menu: "Aus Datei malen …",
-    title: (layer) => `Aus einer Datei in „${layer}“ malen`,
-    lead: "Messwerte (CSV), eine Karte mit Flächen (GeoJSON, Shapefile), ein Raster (GeoTIFF), ein Orthofoto oder eine gescannte Karte (TIFF, PNG, JPEG). Sie können dies rückgängig machen.",
-    file: "Datei oder zusammengehörige Dateien",
-    file_hint:
-      "Wählen Sie für ein Shapefile dessen .shp und .dbf (und .prj, .cpg) oder ein ZIP davon. Fügen Sie bei einem Bild die World-Datei hinzu, falls vorhanden.",
-    unknown: (file) =>
-      `„${file}“ wird nicht unterstützt. Wählen Sie .csv, .geojson, .shp mit .dbf, .tif, .png, .jpg oder .zip.`,
-    looking: "Datei wird gelesen …",
-    sending: (percent) => `Wird hochgeladen: ${percent} %`,
-    polygons: (n) => count(n, "Fläche", "Flächen"),
-    columns: (n) => count(n, "Attribut", "Attribute"),
-    bands: (n) => count(n, "Kanal", "Kanäle"),
-    bounds: (x0, x1, y0, y1) => `x von ${x0} bis ${x1}, y von ${y0} bis ${y1}`,
-    readings_hint:
-      "Die erste Zeile nennt die Spalten x, y, z und value, in Koordinaten und Einheit des Modells. Außerhalb des Radius bleibt die Kartierung erhalten.",
-    radius: "Radius um jede Stelle",
-    tolerance: "Größter Abstand zur Oberfläche",
-    vertices_hint:
-      "Eine Zahl je Zeile, in der Reihenfolge der Eckpunkte des Scans. Die Zahlen ersetzen den gesamten Inhalt der Ebene.",
-    source: "Eckpunkte von",
-    attribute: "Jede Fläche erhält",
-    one_value: "einen Wert für alle Flächen",
-    attribute_number: (name) => `${name} (Zahl)`,
-    attribute_text: (name) => `${name} (Name einer Klasse)`,
-    samples: (values) => `Zum Beispiel ${values}`,
-    names_need_legend:
-      "Namen erfordern eine Ebene mit Klassen. Wählen Sie eine solche Ebene oder ein Attribut mit Zahlen.",
-    names_become:
-      "Namen, die einer Klasse entsprechen, erhalten diese Klasse. Andere Namen werden neue Klassen.",
-    names: "Klassennamen aus",
-    no_names: "keine",
-    picture_gives: "Jede Stelle erhält",
-    modes: { luminance: "Helligkeit", band: "Zahl", colors: "Nach Farbe" },
-    mode_hints: {
-      luminance: "Die Helligkeit des Bildes, 0 bis 255.",
-      band: "Die Zahl im Raster. Stellen ohne Zahl bleiben unverändert.",
-      colors: "Der Wert der Farbe. Stellen mit ignorierten Farben bleiben unverändert.",
-    },
-    band: "Kanal",
-    color: "Farbe",
-    share: "Anteil",
-    gets: "Erhält",
-    left_out: "ignoriert",
-    value_of: (color) => `Wert von ${color}`,
-    color_tolerance: "Farbtoleranz",
-    color_tolerance_hint:
-      "Größer für verblasste oder verrauschte Scans, kleiner für ähnliche Farben.",
-    colors_wrong:
-      "Geben Sie für jede verwendete Farbe eine Zahl ein, und verwenden Sie mindestens eine.",
-    bad_tolerance: (least, most) => `Geben Sie eine Zahl von ${least} bis ${most} ein.`,
-    world: "Die sechs Zahlen der World-Datei (.tfw, .pgw, .jgw)",
-    world_known: "Die Datei enthält ihre Lage.",
-    world_wrong:
-      "Geben Sie die sechs Zahlen der World-Datei des Bildes ein. Daraus ergibt sich seine Lage.",
-    crs: {
-      question: (crs: string) =>
-        `Die Karte liegt in ${crs}, aber dieses Modell hat kein Koordinatensystem. Sind die Koordinaten des Modells in ${crs}?`,
-      hint: "Wenn nicht, wird die Karte an der falschen Stelle gemalt. Das kuratorische Team kann das Koordinatensystem des Modells festlegen; dann entfällt diese Frage.",
-      yes: "Ja, Karte verwenden",
-      no: "Nein",
-    },
-    along: "Richtung der Projektion",
-    direction: {
-      "-z": "in Richtung −z (Koordinaten x, y)",
-      "+z": "in Richtung +z (Koordinaten x, y)",
-      "-y": "in Richtung −y (Koordinaten x, z)",
-      "+y": "in Richtung +y (Koordinaten x, z)",
-      "-x": "in Richtung −x (Koordinaten y, z)",
-      "+x": "in Richtung +x (Koordinaten y, z)",
-    },
-    paint: "Malen",
-    working: "Wird gemalt …",
-  },
-
   orthophoto: {
     open: "Orthofoto hinzufügen …",
     title: "Orthofoto als Oberflächenbild",
@@ -806,6 +730,7 @@ export const texts = {
     edit: "Bearbeiten …",
     delete: "Löschen …",
     statistics: "Flächen …",
+    paint_file: "Aus Datei malen …",
     save_default: "Als Vorgabe für alle speichern",
     reset_default: "Auf Vorgabe zurücksetzen",
     lock: "Sperren",

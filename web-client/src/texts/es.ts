@@ -645,81 +645,6 @@ export const texts = {
     apply_erase: "Borrar",
   },
 
-  maps: {
-    menu: "Pintar desde un archivo…",
-    title: (layer) => `Pintar «${layer}» desde un archivo`,
-    lead: "Valores medidos (CSV), un mapa con áreas (GeoJSON, shapefile), un ráster (GeoTIFF), una ortofoto o un mapa escaneado (TIFF, PNG, JPEG). Se puede deshacer.",
-    file: "Archivo, o archivos que van juntos",
-    file_hint:
-      "De un shapefile, elija el .shp y el .dbf (y el .prj y el .cpg), o un zip con ellos. Con una imagen, añada su archivo de georreferenciación si lo hay.",
-    unknown: (file) =>
-      `El formato de «${file}» no es compatible. Elija .csv, .geojson, .shp con .dbf, .tif, .png, .jpg o .zip.`,
-    looking: "Leyendo el archivo…",
-    sending: (percent) => `Subiendo: ${percent} %`,
-    polygons: (n) => count(n, "área", "áreas"),
-    columns: (n) => count(n, "atributo", "atributos"),
-    bands: (n) => count(n, "banda", "bandas"),
-    bounds: (x0, x1, y0, y1) => `x de ${x0} a ${x1}, y de ${y0} a ${y1}`,
-    readings_hint:
-      "La primera línea nombra las columnas x, y, z y value, en las coordenadas y la unidad del modelo. Lo pintado fuera del radio se conserva.",
-    radius: "Radio alrededor de cada lugar",
-    tolerance: "Distancia máxima a la superficie",
-    vertices_hint:
-      "Un número por línea, en el orden de los vértices del escaneo. Sustituyen todo el contenido de la capa.",
-    source: "Vértices de",
-    attribute: "Cada área recibe",
-    one_value: "un valor para todas las áreas",
-    attribute_number: (name) => `${name} (número)`,
-    attribute_text: (name) => `${name} (nombre de una clase)`,
-    samples: (values) => `Por ejemplo ${values}`,
-    names_need_legend:
-      "Los nombres necesitan una capa con clases. Elija una capa así o un atributo con números.",
-    names_become:
-      "Los nombres que coinciden con una clase reciben esa clase. Los demás serán clases nuevas.",
-    names: "Atributo con el nombre de la clase",
-    no_names: "ninguno",
-    picture_gives: "Cada lugar recibe",
-    modes: { luminance: "Brillo", band: "Número", colors: "Por color" },
-    mode_hints: {
-      luminance: "El brillo de la imagen, de 0 a 255.",
-      band: "El número del ráster. Los lugares sin número no cambian.",
-      colors: "El valor del color. Los lugares con colores omitidos no cambian.",
-    },
-    band: "Banda",
-    color: "Color",
-    share: "Cubre",
-    gets: "Recibe",
-    left_out: "omitido",
-    value_of: (color) => `Valor de ${color}`,
-    color_tolerance: "Tolerancia de color",
-    color_tolerance_hint:
-      "Mayor para escaneos desvaídos o con ruido, menor para colores parecidos.",
-    colors_wrong: "Introduzca un número para cada color en uso, y use al menos un color.",
-    bad_tolerance: (least, most) => `Introduzca un número de ${least} a ${most}.`,
-    world: "Los seis números de su archivo de georreferenciación (.tfw, .pgw, .jgw)",
-    world_known: "El archivo contiene su posición.",
-    world_wrong:
-      "Introduzca los seis números del archivo de georreferenciación de la imagen. Indican su posición.",
-    crs: {
-      question: (crs: string) =>
-        `El mapa está en ${crs}, pero este modelo no tiene sistema de coordenadas. ¿Están las coordenadas del modelo en ${crs}?`,
-      hint: "Si no lo están, el mapa se pintará en un lugar equivocado. Un curador puede definir el sistema de coordenadas del modelo; entonces no se volverá a preguntar.",
-      yes: "Sí, usar el mapa",
-      no: "No",
-    },
-    along: "Dirección de la proyección",
-    direction: {
-      "-z": "en la dirección −z (coordenadas x, y)",
-      "+z": "en la dirección +z (coordenadas x, y)",
-      "-y": "en la dirección −y (coordenadas x, z)",
-      "+y": "en la dirección +y (coordenadas x, z)",
-      "-x": "en la dirección −x (coordenadas y, z)",
-      "+x": "en la dirección +x (coordenadas y, z)",
-    },
-    paint: "Pintar",
-    working: "Pintando…",
-  },
-
   orthophoto: {
     open: "Añadir una ortofoto…",
     title: "Ortofoto como imagen de la superficie",
@@ -797,6 +722,7 @@ export const texts = {
     edit: "Editar…",
     delete: "Eliminar…",
     statistics: "Áreas…",
+    paint_file: "Pintar desde un archivo…",
     save_default: "Guardar como vista predeterminada para todos",
     reset_default: "Restablecer la vista predeterminada",
     lock: "Bloquear",

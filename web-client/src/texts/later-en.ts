@@ -1402,4 +1402,77 @@ export const laterTexts = {
     done: "This is the new surface.",
     old_stays: (name: string) => `The earlier model “${name}” has layers, so it stays.`,
   },
+
+  maps: {
+    title: (layer: string) => `Paint “${layer}” from a file`,
+    lead: "Choose measured values (CSV), a map with areas (GeoJSON, shapefile), a raster (GeoTIFF), an orthophoto or a scanned map (TIFF, PNG, JPEG). You can undo this.",
+    file: "File, or files that belong together",
+    file_hint:
+      "For a shapefile, choose its .shp and .dbf files (and .prj and .cpg), or a zip file of them. For a picture, also choose its world file if it has one.",
+    unknown: (file: string) =>
+      `“${file}” is not supported. Choose .csv, .geojson, .shp with .dbf, .tif, .png, .jpg or .zip.`,
+    looking: "Reading the file…",
+    sending: (percent: number) => `Uploading: ${percent} %`,
+    polygons: (n: number) => count(n, "area", "areas"),
+    columns: (n: number) => count(n, "attribute", "attributes"),
+    bands: (n: number) => count(n, "band", "bands"),
+    bounds: (x0: string, x1: string, y0: string, y1: string) =>
+      `x from ${x0} to ${x1}, y from ${y0} to ${y1}`,
+    readings_hint:
+      "The first line must name the columns x, y, z and value. Use the model's coordinates and unit. Paint outside the radius does not change.",
+    radius: "Radius around each point",
+    tolerance: "Largest distance from the surface",
+    vertices_hint:
+      "The file must contain one number per line, in the order of the scan's vertices. The numbers replace all values of the layer.",
+    source: "Vertices of",
+    attribute: "Each area gets",
+    one_value: "one value for all areas",
+    attribute_number: (name: string) => `${name} (number)`,
+    attribute_text: (name: string) => `${name} (name of a class)`,
+    samples: (values: string) => `For example ${values}`,
+    names_need_legend:
+      "Names require a layer with classes. Choose such a layer, or an attribute with numbers.",
+    names_become: "Names that match a class get that class. Other names become new classes.",
+    names: "Class names from",
+    no_names: "none",
+    picture_gives: "Each point gets",
+    modes: { luminance: "Brightness", band: "Number", colors: "By color" },
+    mode_hints: {
+      luminance: "The brightness of the picture, 0 to 255.",
+      band: "The number in the raster. Points without a number do not change.",
+      colors: "The value of the color. Points with ignored colors do not change.",
+    },
+    band: "Band",
+    color: "Color",
+    share: "Covers",
+    gets: "Gets",
+    left_out: "ignored",
+    value_of: (color: string) => `Value of ${color}`,
+    color_tolerance: "Color tolerance",
+    color_tolerance_hint:
+      "Use a larger value for faded or noisy scans, a smaller value for similar colors.",
+    colors_wrong: "Enter a number for each color in use. Use at least one color.",
+    bad_tolerance: (least: number, most: number) => `Enter a number from ${least} to ${most}.`,
+    world: "The six numbers of its world file (.tfw, .pgw, .jgw)",
+    world_known: "The file contains its position.",
+    world_wrong: "Enter the six numbers of the picture's world file. They define its position.",
+    crs: {
+      question: (crs: string) =>
+        `The map is in ${crs}, but this model has no coordinate system. Are the model's coordinates in ${crs}?`,
+      hint: "If not, the map is painted in the wrong place. A curator can set the model's coordinate system; then this question is not asked again.",
+      yes: "Yes, use the map",
+      no: "No",
+    },
+    along: "Direction of projection",
+    direction: {
+      "-z": "in the direction of −z (coordinates x, y)",
+      "+z": "in the direction of +z (coordinates x, y)",
+      "-y": "in the direction of −y (coordinates x, z)",
+      "+y": "in the direction of +y (coordinates x, z)",
+      "-x": "in the direction of −x (coordinates y, z)",
+      "+x": "in the direction of +x (coordinates y, z)",
+    },
+    paint: "Paint",
+    working: "Painting…",
+  },
 } as const;

@@ -588,7 +588,11 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       start: of_layer("cracks", w.cleanup.open_pieces),
       end: close_dialog,
     },
-    { name: "paint from a file", start: of_layer("Moisture", w.maps.menu), end: close_dialog },
+    {
+      name: "paint from a file",
+      start: of_layer("Moisture", w.layers.paint_file),
+      end: close_dialog,
+    },
     {
       name: "fill where",
       start: async () => {

@@ -336,7 +336,7 @@ export class StrataLayerPanel extends LitElement {
                   ${icon("upload")}${texts.rasters.import}
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "map", layer })}>
-                  ${icon("upload")}${texts.maps.menu}
+                  ${icon("upload")}${texts.layers.paint_file}
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "cleanup", layer })}>
                   ${icon("eraser")}${texts.cleanup.open}
