@@ -46,9 +46,9 @@ export interface SelectionRequest {
 }
 
 /**
- * The dialog that unrolls the model, the dialogs for a condition report, for a 3D model and for GIS
+ * The dialog that unrolls the model, the dialogs for a condition report, for bills, for a 3D model and for GIS
  * programs, or the photographs.
  */
 export interface ModelDialogRequest {
-  dialog: "rollout" | "report" | "export" | "gis" | "linked" | "photographs";
+  dialog: "rollout" | "report" | "bills" | "export" | "gis" | "linked" | "photographs";
 }

@@ -1,6 +1,7 @@
 // The dialogs and the selection of the model page. They are a separate part (`page-parts.ts`), so the page is shown
 // before they are loaded.
 
+import "../features/bills/bills-dialog";
 import "../features/layers/cleanup-dialog";
 import "../features/layers/color-dialog";
 import "../features/tables/column-dialog";

@@ -232,6 +232,9 @@ function ofModel(host: PageHost): Command[] {
       dialog: "photographs",
     }),
     opening(host, group, "document", texts.condition_report.open, { dialog: "report" }),
+    ...(session.canCurate
+      ? [opening(host, group, "table", texts.billing.open, { dialog: "bills" })]
+      : []),
     ...(mayDownload(session.role, model)
       ? [opening(host, group, "cube", texts.model_export.open, { dialog: "export" })]
       : []),

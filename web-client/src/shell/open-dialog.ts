@@ -151,6 +151,10 @@ export function modelDialog(dialog: OpenDialog, host: PageHost): TemplateResult 
       ></strata-photograph-dialog>`;
     case "report":
       return html`<strata-report-dialog .session=${session} @closed=${closed}></strata-report-dialog>`;
+    case "bills":
+      return session.model
+        ? html`<strata-bills-dialog .api=${session.api} project=${session.model.project} @closed=${closed}></strata-bills-dialog>`
+        : nothing;
     case "export":
       return html`<strata-export-dialog .session=${session} @closed=${closed}></strata-export-dialog>`;
     case "deposit":

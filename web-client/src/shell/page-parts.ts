@@ -21,6 +21,7 @@ export type PagePart =
   | "people"
   | "nodes"
   | "kiosks"
+  | "bills"
   | "preferences";
 
 /** The import of each part. It is injected, because a part may request another part. */

@@ -83,6 +83,7 @@ setPartLoads({
   people: later(() => import("../features/account/people-dialog")),
   nodes: later(() => import("../features/account/nodes-dialog")),
   kiosks: later(() => import("../features/account/kiosks-dialog")),
+  bills: later(() => import("../features/bills/bills-dialog")),
   preferences: later(() => import("../features/account/preferences-fields")),
 });
 
@@ -96,7 +97,9 @@ export class StrataApp extends LitElement {
   @state() private _chosenProject = ""; // slug of the project for imports
   @state() private _session: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private _problem = "";
-  @state() private _dialog: "account" | "people" | "nodes" | "kiosks" | "preferences" | null = null;
+  @state() private _dialog:
+    "account" | "people" | "nodes" | "kiosks" | "preferences" | "bills" | null = null;
+  private _billed = ""; // slug of the project whose bills are shown
   @state() private _dropping = false;
   @state() private _imported = 0;
   private _dragDepth = 0;
@@ -282,8 +285,14 @@ export class StrataApp extends LitElement {
           @signed-out=${this.signedOut}
           @choose-project=${({ detail }: CustomEvent<string>) => (this._chosenProject = detail)}
           @projects-changed=${({ detail }: CustomEvent<string | null>) => void this.takeProjects(detail)}
+          @bills=${({ detail }: CustomEvent<string>) => this.showBills(detail)}
           @import-files=${(event: CustomEvent<File[]>) => void this.importFiles(withoutFolders(event.detail))}
         ></strata-home-page>`;
+  }
+
+  private showBills(project: string): void {
+    this._billed = project;
+    this._dialog = "bills";
   }
 
   private joinPage(me: Me | null): unknown {
@@ -326,6 +335,9 @@ export class StrataApp extends LitElement {
     }
     if (this._dialog === "kiosks") {
       return html`<strata-kiosks-dialog .api=${this._api} @closed=${closed} @signed-out=${this.signedOut}></strata-kiosks-dialog>`;
+    }
+    if (this._dialog === "bills") {
+      return html`<strata-bills-dialog .api=${this._api} project=${this._billed} @closed=${closed}></strata-bills-dialog>`;
     }
     if (this._dialog === "preferences")
       return html`<strata-preferences-dialog @closed=${closed}></strata-preferences-dialog>`;

@@ -1556,6 +1556,8 @@ export const texts = {
     title: "3D-Modell exportieren",
     open: "3D-Modell exportieren …",
   },
+  billing: { part: "Abrechnung", open: "Leistungsverzeichnisse …" },
+
   gis: { part: "Andere Programme", open: "GIS-Programm verbinden …", linked: "Verknüpfte Daten …" },
 
   tours: {

@@ -1509,6 +1509,8 @@ export const texts = {
 
   condition_report: { title: "Condition report", open: "Condition report…" },
   model_export: { part: "3D model", title: "Export 3D model", open: "Export 3D model…" },
+  billing: { part: "Billing", open: "Bills of quantities…" },
+
   gis: { part: "Other programs", open: "Connect a GIS program…", linked: "Linked data…" },
 
   tours: {

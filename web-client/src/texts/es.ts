@@ -1552,6 +1552,8 @@ export const texts = {
     title: "Exportar modelo 3D",
     open: "Exportar modelo 3D…",
   },
+  billing: { part: "Mediciones", open: "Estados de mediciones…" },
+
   gis: { part: "Otros programas", open: "Conectar un programa SIG…", linked: "Datos enlazados…" },
   tours: {
     title: "Recorridos",

@@ -726,6 +726,45 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       end: close_dialog,
     },
     {
+      name: "bills of quantities",
+      start: async () => {
+        await open_tab(page, w, w.view.title);
+        await open(button(w.billing.open));
+        await page.locator("strata-bills-dialog").getByText(w.bills.none).waitFor();
+        await page.getByRole("textbox", exact(w.bills.new_name)).fill("Facade to the north");
+      },
+      keyboard: true,
+    },
+    {
+      name: "bill of quantities",
+      start: async () => {
+        const bill = page.locator("strata-bill-dialog");
+        await page
+          .locator("strata-bills-dialog")
+          .getByRole("button", exact(w.bills.create))
+          .click();
+        await bill.getByText(w.bills.empty, { exact: true }).waitFor();
+        await bill.getByRole("button", exact(w.bills.new_group)).click();
+        await bill.locator("[name=short_text]").fill("Natural stone of the walls and the vaults");
+        await bill.getByRole("button", exact(w.bills.new_position)).click();
+        await bill.locator("[name=short_text]").fill("Clean the surface with steam, no acids");
+        await bill.getByRole("button", exact(w.bills.add_rule)).click();
+        await bill.getByRole("button", exact(w.bills.add_line)).click();
+        await bill.locator('[name="measurements[0].formula"]').fill("2 * 1,20 * 0,85");
+        await bill.getByRole("button", exact(w.bills.measure_all)).click();
+        await bill.locator("strata-bill-proof tbody tr").first().waitFor();
+      },
+      end: async () => {
+        await page.keyboard.press("Escape");
+        await page.locator("strata-bills-dialog").getByRole("listitem").waitFor();
+        await close_dialog();
+        const path = "/projects/demo/bills";
+        for (const { id } of (await server.json("GET", path)).bills)
+          await server.request("DELETE", `${path}/${id}`);
+      },
+      keyboard: true,
+    },
+    {
       name: "condition report",
       start: async () => {
         await open_tab(page, w, w.view.title);

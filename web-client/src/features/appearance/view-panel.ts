@@ -80,7 +80,7 @@ export class StrataViewPanel extends SidePanel {
   }
 
   private figure(): TemplateResult {
-    const { model, role } = this.session;
+    const { model, role, canCurate } = this.session;
     const open = (): boolean =>
       this.dispatchEvent(
         new CustomEvent<ViewRequest>("request", { detail: { dialog: "figure", view: null } }),
@@ -100,6 +100,14 @@ export class StrataViewPanel extends SidePanel {
       <h3>${texts.condition_report.title}</h3>
       <div><button @click=${() => show("report")}>${icon("document")}${texts.condition_report.open}</button></div>
     </div>
+    ${
+      canCurate
+        ? html`<div class="part">
+            <h3>${texts.billing.part}</h3>
+            <div><button @click=${() => show("bills")}>${icon("table")}${texts.billing.open}</button></div>
+          </div>`
+        : nothing
+    }
     ${
       model && mayDownload(role, model)
         ? html`<div class="part">

@@ -333,6 +333,7 @@ export class StrataHomePage extends LitElement {
           ? html`<button class="quiet" role="menuitem" @click=${() => void this.describeProject(project)}>${icon("edit")}${texts.projects.describe}</button>`
           : nothing
       }
+      <button class="quiet" role="menuitem" @click=${() => this.dispatchEvent(new CustomEvent("bills", { detail: project.slug }))}>${icon("table")}${texts.billing.open}</button>
       <button class="quiet" role="menuitem" @click=${() => void this.lookIntoTrash(project)}>${icon("trash")}${texts.bin.open}</button>
       ${
         project.slug === kDemoProject && this.canAdminister
