@@ -68,7 +68,7 @@ describe("The items of a bill", () => {
         let items: readonly BillItem[] = [];
         for (const { kind, at } of steps) {
           const index = items.length > 0 ? at % items.length : null;
-          if (kind !== "remove") items = inserted(items, index, kind as "group").items;
+          if (kind !== "remove") items = inserted(items, index, kind).items;
           else if (index !== null) items = removed(items, index);
         }
         expect(new Set(numbers(items)).size).toBe(items.length);

@@ -52,8 +52,8 @@ export function countingFields(fields: CountingFields): TemplateResult {
       <div class="fields">
         ${
           rule.table === undefined
-            ? nothing
-            : choiceField({
+            ? nothing // the element is a whole class, whose size says nothing about its pieces
+            : html`${choiceField({
                 label: words.size_of,
                 name: `${at}.size.of`,
                 value: size.of ?? "area",
@@ -63,9 +63,9 @@ export function countingFields(fields: CountingFields): TemplateResult {
                   name: words.measures[value],
                 })),
                 typed: (of) => putSize({ of: of as "area" | "length" }, "size.of"),
-              })
+              })}
+              ${number("over", words.over)} ${number("up_to", words.up_to)}`
         }
-        ${number("over", words.over)} ${number("up_to", words.up_to)}
         ${decimalField({
           label: words.factor,
           name: `${at}.factor`,
@@ -98,7 +98,7 @@ export function countingFields(fields: CountingFields): TemplateResult {
           ${words.deduct}
         </label>
         ${
-          rule.deduct
+          rule.deduct && rule.table !== undefined
             ? decimalField({
                 label: words.overmeasured,
                 name: `${at}.overmeasured_up_to`,

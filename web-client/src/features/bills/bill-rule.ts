@@ -123,7 +123,13 @@ export class StrataBillRule extends LitElement {
         this.put(
           id
             ? { table: Number(id), values: undefined, where: undefined, layer: undefined }
-            : { table: undefined, where: undefined, layer: undefined },
+            : {
+                table: undefined,
+                where: undefined,
+                layer: undefined,
+                size: undefined,
+                overmeasured_up_to: undefined,
+              },
           "table",
         ),
     })}
