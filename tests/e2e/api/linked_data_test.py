@@ -362,7 +362,7 @@ def scene_points(content):
 def test_the_manifest_is_a_scene_with_the_surface_and_cameras(server):
     manifest = document(server, "/models/sheet/manifest")
     assert manifest["@context"] == "http://iiif.io/api/presentation/4/context.json"
-    assert manifest["rights"].startswith("https://creativecommons.org")
+    assert manifest["rights"].startswith("http://creativecommons.org")
     scene, canvas = manifest["items"]
     assert (scene["type"], canvas["type"]) == ("Scene", "Canvas")
     assert scene["spatialScale"] == {"type": "Quantity", "quantityValue": 1.0, "unit": "m"}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "core/text/percent.h"
 #include "domain/layers/layer.h"
@@ -11,6 +12,13 @@
 
 namespace strata::net {
 namespace {
+
+// IIIF names licenses by the address with http, which identifies them.
+std::string rights_of(const std::string& uri) {
+  for (const std::string_view host : {"//creativecommons.org/", "//rightsstatements.org/"})
+    if (uri.starts_with("https:" + std::string(host))) return "http" + uri.substr(5);
+  return uri;
+}
 
 // IIIF groups texts by language. Names and descriptions in Strata have no stated language.
 nlohmann::json texts(const std::string& text) { return {{"none", {text}}}; }
@@ -60,7 +68,7 @@ class Manifest {
     if (!model_.credit.empty())
       json["requiredStatement"] = {{"label", english("Attribution")},
                                    {"value", texts(model_.credit)}};
-    if (is_iri(model_.rights_uri)) json["rights"] = model_.rights_uri;
+    if (is_iri(model_.rights_uri)) json["rights"] = rights_of(model_.rights_uri);
     if (with_surface) json["items"].push_back(scene(views));
     for (const ManifestView& view : views) json["items"].push_back(canvas(view));
     return json;
