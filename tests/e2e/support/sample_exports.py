@@ -175,7 +175,7 @@ def bill(form):
                     "unit": "m2",
                     "unit_price": "900.00",
                     "rules": rules,
-                    "rounding": {"places": 4},
+                    "rounding": {"places": 3},
                     "measurements": [{"text": "Foot", "formula": "2 * 0,02 * 0,03"}],
                 },
             ]
