@@ -957,7 +957,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       start: async () => {
         await open(button(w.model.details));
         await button(w.deposit.open).click();
-        await page.locator("strata-deposit-dialog dialog[open] [name=doi]").waitFor();
+        await page.locator("strata-deposit-dialog [name=doi]").waitFor();
       },
       end: close_dialog,
       keyboard: true,
