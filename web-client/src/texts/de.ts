@@ -422,7 +422,7 @@ export const texts = {
       smallest: "Kleinstes Detail in einer Ebene mit Standardauflösung",
     },
     check_size: "Größe prüfen",
-    correct_size: "Größe und Richtung korrigieren …",
+    correct_size: "Größe korrigieren …",
   },
 
   tools: {

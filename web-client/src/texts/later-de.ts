@@ -69,7 +69,7 @@ export const laterTexts = {
     visible: "Sichtbare Ebenen auswählen",
   },
   deposit: {
-    open: "Für ein Repositorium beschreiben …",
+    open: "Für Repositorium …",
     title: "Projekt hinterlegen",
     citation: "Zitat",
     lead: "Diese Angaben zum Projekt erhält ein Repositorium, das dem Projekt einen DOI gibt. Felder mit * sind für einen DOI nötig.",
@@ -101,7 +101,7 @@ export const laterTexts = {
     add_creator: "Urheber hinzufügen",
     remove: "Entfernen",
     remove_creator: (n: number) => `Urheber ${n} entfernen`,
-    make: "Speichern und Datei erstellen",
+    make: "Datei erstellen",
     making: "Fortschritt der Hinterlegung",
     cancel: "Abbrechen",
     saved: "Gespeichert.",
