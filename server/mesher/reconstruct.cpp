@@ -89,8 +89,8 @@ bool take_normals(const Points& points, PointCloud& cloud) {
   return false;
 }
 
-// Joins the vertices of each edge whose both ends are marked (union-find). Returns for each marked
-// vertex the vertex that stands for its part.
+// Joins the vertices of each edge whose both ends are marked (union-find). Returns a representative
+// of the part of each marked vertex.
 std::vector<std::uint32_t> parts_of(const TriangleMesh& mesh, const std::vector<bool>& marked) {
   std::vector<std::uint32_t> parent(mesh.vertices_.size());
   std::iota(parent.begin(), parent.end(), 0U);

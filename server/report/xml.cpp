@@ -21,10 +21,7 @@ pugi::xml_node begin_xml(pugi::xml_document& document, const char* element) {
 
 pugi::xml_node add_text(pugi::xml_node parent, const char* element, const std::string& text) {
   pugi::xml_node node = parent.append_child(element);
-  std::string allowed = text;
-  std::erase_if(allowed,
-                [](unsigned char c) { return c < 0x20 && c != '\t' && c != '\n' && c != '\r'; });
-  node.append_child(pugi::node_pcdata).set_value(allowed.c_str());
+  node.append_child(pugi::node_pcdata).set_value(text.c_str());
   return node;
 }
 

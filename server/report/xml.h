@@ -26,7 +26,7 @@ pugi::xml_node add_value(pugi::xml_node parent, const char* element, const Value
   return set(parent.append_child(element), "w:val", value);
 }
 
-// Appends an element that contains a text, without the control characters that XML does not allow.
+// Appends an element that contains a text.
 pugi::xml_node add_text(pugi::xml_node parent, const char* element, const std::string& text);
 
 // Appends a text to a run of WordprocessingML, which has a separate element for each line end.

@@ -1,13 +1,19 @@
 #include <nlohmann/json.hpp>
 
 #include "app/deposit/datacite.h"
+#include "core/text/printable.h"
 #include "report/xml.h"
 
 namespace strata::app {
 namespace {
 
 using nlohmann::json;
-using report::add_text, report::set;
+using report::set;
+
+// The metadata may contain characters that XML does not allow.
+pugi::xml_node add_text(pugi::xml_node parent, const char* element, const std::string& text) {
+  return report::add_text(parent, element, printable(text));
+}
 
 std::string text_of(const json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();

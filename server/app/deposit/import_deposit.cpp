@@ -29,11 +29,6 @@ using nlohmann::json;
 constexpr double kChecked = 0.2, kTables = 0.25, kModels = 0.8, kRecords = 0.95;
 constexpr std::uint64_t kMaxJson = std::uint64_t{256} << 20;
 
-tl::unexpected<Error> damaged(const std::string& file, const std::string& why) {
-  return fail(ErrorCode::invalid, "Deposit damaged",
-              "The file " + file + " of the deposit " + why + ".");
-}
-
 Result<void> check_format(const json& all) {
   if (all.value("format", "") != kDepositFormat)
     return fail(ErrorCode::invalid, "Not a deposit of Strata",
@@ -131,6 +126,11 @@ Result<void> keep_metadata(store::Store& store, const Project& project, const js
 }
 
 }  // namespace
+
+tl::unexpected<Error> damaged(const std::string& file, const std::string& why) {
+  return fail(ErrorCode::invalid, "Deposit damaged",
+              "The file " + file + " of the deposit " + why + ".");
+}
 
 Result<fs::path> Import::place_of(const std::string& path) const {
   if (!is_safe_path(path)) return damaged(path, "has a path that is not allowed");

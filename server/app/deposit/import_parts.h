@@ -31,6 +31,9 @@ struct ImportIds {
   std::map<NamedPartId, NamedPartId> views;
 };
 
+// An `invalid` error for a file of a bag whose content does not have the form of a deposit.
+tl::unexpected<Error> damaged(const std::string& file, const std::string& why);
+
 struct Import {
   store::Store& store;
   std::filesystem::path payload;  // the folder `data` of the bag

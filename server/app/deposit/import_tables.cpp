@@ -123,9 +123,7 @@ class RecordImport {
                            path.get<std::string>(),
                        rows->mistakes.front().problem);
       for (const store::RecordInput& record : rows->records)
-        if (!record.key)
-          return fail(ErrorCode::invalid, "Deposit damaged",
-                      path.get<std::string>() + " has a row without a key.");
+        if (!record.key) return damaged(path.get<std::string>(), "has a row without a key");
       if (import_.progress.cancelled()) return cancelled_problem();
       if (!rows->records.empty()) STRATA_TRY(work(std::move(rows->records)));
     }

@@ -5,6 +5,7 @@ import pathlib
 
 import pytest
 from support.meshes import folded_grid
+from support.missing import missing
 from support.point_clouds import las_points, ply_points, sphere_points
 
 NEFERTITI = (
@@ -135,7 +136,7 @@ def test_a_canceled_import_leaves_nothing(server):
 
 def test_a_real_scan(server):
     if not NEFERTITI.exists():
-        pytest.skip(f"no {NEFERTITI}")
+        missing(f"no scan at {NEFERTITI}")
     mesh = server.import_model(NEFERTITI.read_bytes(), "nefertiti.ply", unit="mm")
     data = NEFERTITI.read_bytes()
     head = data.index(b"end_header\n") + 11
