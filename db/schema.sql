@@ -1077,6 +1077,7 @@ CREATE TABLE public.all_models (
     object_id bigint,
     survey_date text DEFAULT ''::text NOT NULL,
     from_points jsonb,
+    parts jsonb,
     CONSTRAINT all_models_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
     CONSTRAINT all_models_owner_epoch_check CHECK ((owner_epoch >= 0)),
     CONSTRAINT all_models_survey_date_check CHECK ((survey_date ~ '^([0-9]{4}(-[0-9]{2}){0,2})?$'::text)),
@@ -1162,7 +1163,8 @@ CREATE VIEW public.models AS
     all_models.owner_epoch,
     all_models.object_id,
     all_models.survey_date,
-    all_models.from_points
+    all_models.from_points,
+    all_models.parts
    FROM public.all_models
   WHERE (all_models.binned IS NULL);
 

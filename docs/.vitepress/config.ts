@@ -24,6 +24,7 @@ const howTo = {
     "find-stones",
     "interpolate-readings",
     "import-point-clouds",
+    "import-several-scans",
     "import-maps",
   ],
   "Keep records": ["keep-records", "use-lists-of-terms", "attach-files", "use-photographs"],

@@ -316,7 +316,7 @@ class Writer:
         if definition.schema.get("x-camera"):
             text += (
                 f"strata::Camera camera_of(const {name}& value) {{\n"
-                "  return {value.view, value.projection, value.width, value.height, value.section.value_or(std::vector<glm::dvec4>{})};\n}\n\n"
+                "  return {value.view, value.projection, value.width, value.height, value.section.value_or(std::vector<glm::dvec4>{}), value.hidden_parts.value_or(strata::PartSet{})};\n}\n\n"
                 f"Result<void> check(const {name}& value, const std::string& field) {{\n"
                 '  return named_in_message(strata::validate(camera_of(value), ""), field);\n}\n\n'
             )

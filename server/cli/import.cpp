@@ -9,6 +9,7 @@
 #include "cli/remote_import.h"
 #include "jobs/companions.h"
 #include "jobs/import_job.h"
+#include "mesh/io/unpack.h"
 #include "store/content/projects.h"
 
 namespace strata::cli {
@@ -62,6 +63,33 @@ Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
   return scans;
 }
 
+// Returns all files for one model whose parts the scans are. A folder stands for the files in it.
+Result<std::vector<std::vector<jobs::ImportFile>>> all_scans(
+    const std::vector<std::string>& paths) {
+  std::vector<jobs::ImportFile> files;
+  const auto add = [&](const std::filesystem::path& path) {
+    if (std::ranges::find(files, path, &jobs::ImportFile::path) == files.end())
+      files.push_back({path.generic_string(), path});
+  };
+  for (const std::filesystem::path path : paths) {
+    if (std::filesystem::is_directory(path)) {
+      std::vector<std::filesystem::path> found;
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
+        if (entry.is_regular_file() && mesh::is_scan_file(entry.path().filename().string()))
+          found.push_back(entry.path());
+      std::ranges::sort(found);
+      for (const auto& file : found) add(file);
+    } else if (!std::filesystem::is_regular_file(path)) {
+      return fail(ErrorCode::malformed, "No such file", path.string());
+    } else if (mesh::is_mesh(mesh::input_kind(path.filename().string()))) {
+      for (const auto& file : jobs::with_companions(path)) add(file.path);
+    } else {
+      add(path);
+    }
+  }
+  return std::vector<std::vector<jobs::ImportFile>>{std::move(files)};
+}
+
 int run(const ImportOptions& options) {
   std::unique_ptr<OpenDatabase> database;
   if (options.server.empty()) {
@@ -69,7 +97,7 @@ int run(const ImportOptions& options) {
     if (!opened) return report(opened.error());
     database = std::move(*opened);
   }
-  auto scans = group_scans(options.files);
+  auto scans = options.request.parts ? all_scans(options.files) : group_scans(options.files);
   if (!scans) return report(scans.error());
   for (const auto& files : *scans) {
     jobs::ImportRequest request = options.request;
@@ -135,6 +163,8 @@ Command add_import(CLI::App& app) {
           "For points without triangles: widest gap that the surface closes, in the file's "
           "units (default: 12 times the distance between points)")
       ->check(CLI::NonNegativeNumber);
+  command->add_flag("--parts", options->request.parts,
+                    "Import all scans, also those in named folders, as the parts of one model");
   command->add_flag("--strict", options->request.strict, "Refuse a file that needs repair");
   command
       ->add_option("--server", options->server, "Import into this running server: http://host:port")

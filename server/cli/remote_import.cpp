@@ -180,6 +180,7 @@ std::string import_path(Client& client, const jobs::ImportRequest& request) {
   add_length("weld", request.weld_distance);
   add_length("cell", request.cell);
   add_length("gap", request.gap);
+  if (request.parts) add("parts", "true");
   if (request.strict) add("strict", "true");
   return path;
 }

@@ -36,6 +36,24 @@ class Progress {
     from_ = from;
     to_ = to;
   }
+  // Maps later reports to a share of the current stage, until this object is destroyed.
+  class Share {
+   public:
+    Share(Progress& progress, double from, double to) : progress_(progress) {
+      std::lock_guard lock(progress_.mutex_);
+      from_ = progress_.from_;
+      to_ = progress_.to_;
+      progress_.from_ = from_ + (to_ - from_) * from;
+      progress_.to_ = from_ + (to_ - from_) * to;
+    }
+    ~Share() { progress_.begin_stage(from_, to_); }
+    Share(const Share&) = delete;
+    Share& operator=(const Share&) = delete;
+
+   private:
+    Progress& progress_;
+    double from_ = 0, to_ = 1;
+  };
   void report(double fraction, std::string message) {
     std::lock_guard lock(mutex_);
     set(fraction, std::move(message));

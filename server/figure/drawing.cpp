@@ -42,6 +42,7 @@ Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const gl
   camera.width = width;
   camera.height = height;
   camera.section = drawing.section;
+  camera.hidden_parts = drawing.hidden_parts;
   return camera;
 }
 

@@ -56,6 +56,7 @@ struct Drawing {
   int dpi = 300;
   int width = 0, height = 0;  // in pixels
   std::vector<glm::dvec4> section{};
+  PartSet hidden_parts{};
 
   double units_per_mm() const { return scale / 1000 / metres_per_unit; }
 };

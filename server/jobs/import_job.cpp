@@ -49,18 +49,36 @@ std::vector<std::string> names_of(std::span<const ImportFile> files) {
   return names;
 }
 
-// Returns the files with their base names. Later files with the same name from other folders get
-// numbers.
-std::vector<store::NewModel::Source> sources_of(std::span<const ImportFile> files) {
+// Returns the files with their base names, or with their folders if they determine the tree of
+// parts. Later files with the same name get numbers.
+std::vector<store::NewModel::Source> sources_of(const ImportRequest& request) {
   std::vector<store::NewModel::Source> sources;
   std::set<std::string> taken;
-  for (const ImportFile& file : files) {
+  for (const ImportFile& file : request.files) {
     const std::string base = base_filename(file.filename);
-    std::string name = base;
+    std::string name = request.parts ? relative_filename(file.filename) : base;
+    if (name.size() > kMaxFilenameLength) name = base;
     for (int n = 2; !taken.insert(name).second; ++n) name = std::to_string(n) + "-" + base;
     sources.push_back({name, file.path});
   }
   return sources;
+}
+
+// The name of the only scan, or of the innermost folder that contains all scans.
+std::string default_name(const ImportRequest& request) {
+  const auto scans = mesh::pick_scans(names_of(request.files), request.parts);
+  const auto name_at = [&](std::size_t i) {
+    return relative_filename(request.files[(*scans)[i]].filename);
+  };
+  const std::string first = name_at(0);
+  if (scans->size() == 1) return stem(first);
+  std::size_t common = first.find_last_of('/');
+  for (std::size_t i = 1; i < scans->size() && common != std::string::npos; ++i) {
+    const std::string other = name_at(i);
+    while (common != std::string::npos && other.compare(0, common + 1, first, 0, common + 1) != 0)
+      common = common == 0 ? std::string::npos : first.find_last_of('/', common - 1);
+  }
+  return common == std::string::npos ? stem(first) : base_filename(first.substr(0, common));
 }
 
 Result<void> refuse_faults(const std::vector<Repair>& repairs) {
@@ -79,7 +97,8 @@ Result<void> refuse_faults(const std::vector<Repair>& repairs) {
 // Otherwise unfolds the surface, and adds the reason to `repairs`.
 Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair>& repairs,
                               Progress& progress) {
-  if (!mesh.corner_uvs.empty()) {
+  // The texture coordinates of several scans overlap.
+  if (!mesh.corner_uvs.empty() && mesh.part_ends.empty()) {
     progress.report(0, "Checking the texture coordinates");
     auto own_atlas = mesh::keep_uvs(mesh, kLowestResolution, progress);
     if (own_atlas)
@@ -121,21 +140,20 @@ Result<void> check(const ImportRequest& request) {
                           !std::has_single_bit(unsigned(resolution))))
     return fail(ErrorCode::invalid, "Invalid resolution",
                 "The resolution of layers must be 2048, 4096, 8192 or 16384.", "resolution");
-  STRATA_TRY(mesh::pick_scan(names_of(request.files)));
+  STRATA_TRY(mesh::pick_scans(names_of(request.files), request.parts));
   return {};
 }
 
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
                            const store::IdempotentResponse<Model>& answer, MemoryLedger* memory) {
   STRATA_TRY(check(request));
-  const ImportFile& scan = request.files[*mesh::pick_scan(names_of(request.files))];
   const auto project = STRATA_TRY(store.projects().find(request.project));
 
   progress.begin_stage(0, kRead);
   progress.report(0, "Reading the file");
-  auto loaded = STRATA_TRY(mesh::load_mesh(
-      request.files, progress,
-      {request.weld_distance, {request.cell, request.gap, scan.path.parent_path()}}));
+  auto loaded = STRATA_TRY(
+      mesh::load_mesh(request.files, progress,
+                      {request.weld_distance, {request.cell, request.gap}, request.parts}));
   if (request.strict) STRATA_TRY(refuse_faults(loaded.repairs));
 
   const std::string& crs = request.crs.empty() ? loaded.crs : request.crs;
@@ -172,7 +190,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
 
   Model& model = fresh.model;
   model.project_id = project.id;
-  model.name = request.name.empty() ? stem(scan.filename) : request.name;
+  model.name = request.name.empty() ? default_name(request) : request.name;
   model.slug = make_slug(model.name);
   const auto unit = request.unit ? request.unit : loaded.unit;
   model.unit = unit.value_or(request.unit_proposed ? proposal.unit : Unit::m);
@@ -185,6 +203,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   model.proposal = proposal;
   model.crs = crs;
   model.from_points = loaded.from_points;
+  model.parts = std::move(loaded.parts);
   fresh.object_name = request.object;
   model.survey_date = request.survey_date;
   model.default_resolution = request.resolution == 0 ? kLowestResolution : request.resolution;
@@ -194,7 +213,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
 
   progress.begin_stage(kBuilt, 1);
   progress.report(0, "Saving");
-  fresh.sources = sources_of(request.files);
+  fresh.sources = sources_of(request);
   progress.report(0.5, "Saving");
   auto created = store.models().create(
       fresh, [&progress] { return progress.cancelled(); }, answer);

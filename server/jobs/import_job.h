@@ -36,6 +36,8 @@ struct ImportRequest {
   bool strict = false;       // reject a file that needs repair
   // For files with points only, in the file's units; 0: the default (mesh::PointOptions).
   double cell = 0, gap = 0;
+  // The files contain several scans, which become the parts of the model (mesh/io/join_parts.h).
+  bool parts = false;
 };
 
 // Checks a request before the files are uploaded. It checks the names of the files, but not their

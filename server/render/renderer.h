@@ -111,8 +111,8 @@ struct ViewStyle {
   Light light;
   Background background{};
   double unit_mm = 1000;  // millimeters in a model unit, for palette patterns
-  // The shadow on the background, except for a camera with a section. Identified by its address, so
-  // it must not change. Null: no shadow.
+  // The shadow on the background, except for a camera with a section or hidden parts. Identified by
+  // its address, so it must not change. Null: no shadow.
   std::shared_ptr<const mesh::ContactShadow> contact_shadow{};
   bool operator==(const ViewStyle&) const = default;
 };

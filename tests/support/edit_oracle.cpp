@@ -239,6 +239,9 @@ OracleResult oracle_edit(const Scene& scene, const StrokeBatch& stroke,
     for (int i = 0; i < 64; ++i) {
       if (map.packed_position[slot * 64 + static_cast<std::uint32_t>(i)] == mesh::kNoPosition)
         continue;
+      if (!map.part.empty() &&
+          stroke.camera.hidden_parts.test(map.part[slot * 64 + static_cast<std::uint32_t>(i)]))
+        continue;
       bool undecided = false;
       const bool written =
           decide(scene, stroke, radii_px, depth, clip, bias, map.position(slot, i), undecided);

@@ -62,19 +62,20 @@ inline Result<mesh::LoadedMesh> load_text(const std::string& bytes, const std::s
 
 // Makes files by name, in memory. `texts` must outlive the result.
 inline Result<mesh::InputFiles> files_of(
-    const std::vector<std::pair<std::string, std::string>>& texts) {
+    const std::vector<std::pair<std::string, std::string>>& texts, bool parts = false) {
   std::vector<mesh::InputFiles::Entry> entries;
   for (const auto& [name, text] : texts)
     entries.push_back(
         {name, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, std::nullopt});
   Progress progress;
-  return mesh::InputFiles::of(std::move(entries), std::filesystem::temp_directory_path(), progress);
+  return mesh::InputFiles::of(std::move(entries), std::filesystem::temp_directory_path(), progress,
+                              parts);
 }
 
 inline Result<mesh::LoadedMesh> load_texts(
     const std::vector<std::pair<std::string, std::string>>& texts,
     const mesh::LoadOptions& options = {}) {
-  auto files = files_of(texts);
+  auto files = files_of(texts, options.parts);
   if (!files) return tl::unexpected(files.error());
   Progress progress;
   return mesh::load_mesh(std::move(*files), progress, options);

@@ -46,6 +46,14 @@ void read_core(const nlohmann::json& json, strata::Camera& value) {
   value.section.clear();
   if (const auto section = json.find("section"); section != json.end())
     read_value(*section, value.section);
+  value.hidden_parts.reset();
+  if (const auto hidden = json.find("hidden_parts"); hidden != json.end())
+    read_core(*hidden, value.hidden_parts);
+}
+void read_core(const nlohmann::json& json, strata::PartSet& value) {
+  value.reset();
+  for (const auto& part : json)
+    if (const auto number = part.get<std::size_t>(); number < value.size()) value.set(number);
 }
 void read_core(const nlohmann::json& json, strata::LightMode& value) {
   const auto found = std::ranges::find(kLightModes, json.get_ref<const std::string&>());
@@ -103,6 +111,13 @@ nlohmann::json write_core(const strata::Camera& value) {
                       {"width", value.width},
                       {"height", value.height}};
   if (!value.section.empty()) json["section"] = write_value(value.section);
+  if (value.hidden_parts.any()) json["hidden_parts"] = write_core(value.hidden_parts);
+  return json;
+}
+nlohmann::json write_core(const strata::PartSet& value) {
+  nlohmann::json json = nlohmann::json::array();
+  for (std::size_t part = 0; part < value.size(); ++part)
+    if (value.test(part)) json.push_back(part);
   return json;
 }
 nlohmann::json write_core(const strata::LightMode& value) {

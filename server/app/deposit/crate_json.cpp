@@ -51,6 +51,7 @@ json to_crate(const Model& model) {
            {"proposal", model.proposal ? to_json(*model.proposal) : json()},
            {"open_edges", model.open_edges ? to_json(*model.open_edges, 1.0) : json()},
            {"from_points", model.from_points ? to_json(*model.from_points, 1.0) : json()},
+           {"parts", model.parts.empty() ? json() : to_json(model.parts, 1.0)},
            {"repairs", json::array()}};
   for (const auto& [member, text] : kModelTexts) all[member] = model.*text;
   for (const Repair& repair : model.repairs)
@@ -76,6 +77,7 @@ Model model_of(const json& all) {
   model.proposal = scale_proposal_from_json(all.at("proposal"));
   model.open_edges = open_edges_from_json(all.at("open_edges"));
   model.from_points = surface_from_points_from_json(all.value("from_points", json()));
+  model.parts = model_parts_from_json(all.value("parts", json()));
   for (const auto& [member, text] : kModelTexts) model.*text = all.at(member).get<std::string>();
   for (const json& repair : all.at("repairs"))
     model.repairs.push_back(

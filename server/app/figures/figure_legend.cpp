@@ -49,7 +49,7 @@ Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& r
   const auto features = STRATA_TRY(features_in(store, request, layer));
   const MarkSight sight(request, camera);
   std::set<double> keys;
-  for (const auto& [key, feature] : features) {
+  for (const auto& [key, feature, part] : features) {
     const auto value = static_cast<double>(key);
     const double reach = sight.reach_of(feature.places);
     const std::size_t step = std::max<std::size_t>(1, feature.places.size() / kMaxPlaces);

@@ -33,8 +33,8 @@ struct FigureRequest {
   figure::Plane plane;
   std::string from;                    // "top", "view": part of the file name
   std::optional<glm::dvec3> center{};  // in world coordinates
-  // Unrolls the surface instead of drawing it on the plane. Labels, section and light then have no
-  // effect.
+  // Unrolls the surface instead of drawing it on the plane. Labels, section, hidden parts and light
+  // then have no effect.
   struct Rollout {
     mesh::FitRequest fit;
     std::optional<double> cut;  // in radians
@@ -42,6 +42,7 @@ struct FigureRequest {
   };
   std::optional<Rollout> rollout;
   std::vector<glm::dvec4> section;
+  PartSet hidden_parts;
   std::optional<double> scale;
   figure::Paper paper = figure::Paper::a4;
   // A part of a page instead of paper with a margin.

@@ -40,11 +40,16 @@ int samples_of(int dpi) {
 Result<std::unique_ptr<PlaneView>> PlaneView::make(const Services& services, ByteBudget& budget,
                                                    const FigureRequest& request) {
   const auto geometry = request.room->surface().geometry();
-  const auto extent = figure::extent_of(geometry->positions, request.plane, request.section);
+  const auto extent =
+      request.hidden_parts.none()
+          ? figure::extent_of(geometry->positions, request.plane, request.section)
+          : figure::extent_of(mesh::positions_without(*geometry, request.hidden_parts),
+                              request.plane, request.section);
   if (!extent)
     return fail(ErrorCode::invalid, "Nothing to draw",
-                "The section removes the whole model from the figure. Move or remove its planes.",
-                "camera.section");
+                "The section and the hidden parts remove the whole model from the figure. Move "
+                "the planes of the section, or show more parts.",
+                "camera");
   return std::unique_ptr<PlaneView>(new PlaneView(services, budget, request, *extent));
 }
 
@@ -66,6 +71,7 @@ PlaneView::PlaneView(const Services& services, ByteBudget& budget, const FigureR
   drawing_.metres_per_unit = model.metres();
   drawing_.dpi = request.dpi;
   drawing_.section = request.section;
+  drawing_.hidden_parts = request.hidden_parts;
 }
 
 figure::ViewSize PlaneView::size() const {

@@ -9,7 +9,7 @@ namespace strata::app {
 // A view without perspective.
 class PlaneView : public SheetView {
  public:
-  // Returns 422 if the section removes the whole model.
+  // Returns 422 if section and hidden parts remove the whole model.
   static Result<std::unique_ptr<PlaneView>> make(const Services& services, ByteBudget& budget,
                                                  const FigureRequest& request);
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "query/sampling/feature_parts.h"
 #include "render/view/drawn_features.h"
 #include "room/edits.h"
 #include "room/queries.h"
+#include "room/surface.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
 
@@ -29,7 +31,17 @@ Result<std::optional<std::int64_t>> table_sequence(store::Store& store,
 Result<std::vector<KeyFeature>> features_in(store::Store& store, const FigureRequest& request,
                                             const Layer& layer) {
   const auto at = STRATA_TRY(table_sequence(store, request, layer));
-  return store.records().features(*layer.table, request.role, request.room->model().id, at);
+  auto features = STRATA_TRY(
+      store.records().features(*layer.table, request.role, request.room->model().id, at));
+  if (request.hidden_parts.any()) {
+    room::Surface& surface = request.room->surface();
+    const auto tree = surface.search_tree();
+    query::find_parts(features, *surface.geometry(), *tree);
+    std::erase_if(features, [&](const KeyFeature& feature) {
+      return request.hidden_parts.test(static_cast<std::size_t>(feature.part));
+    });
+  }
+  return features;
 }
 
 MarkSight::MarkSight(const FigureRequest& request, const Camera& camera)

@@ -19,7 +19,7 @@ Result<std::map<std::int64_t, query::KeyArea>> record_places(const ReportContext
   const auto at = records_at(context, layer);
   const auto features = STRATA_TRY(context.services.store.records().features(
       *layer.table, request.reader.role, request.room->model().id, at));
-  for (const auto& [key, feature] : features) {
+  for (const auto& [key, feature, part] : features) {
     if (feature.places.empty()) continue;
     const auto [found, is_new] = places.try_emplace(key);
     query::KeyArea& place = found->second;

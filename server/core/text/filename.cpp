@@ -1,5 +1,7 @@
 #include "core/text/filename.h"
 
+#include <algorithm>
+
 #include "core/text/utf8.h"
 
 namespace strata {
@@ -39,6 +41,17 @@ std::string base_filename(std::string_view path) {
   std::size_t cut = out.size() - kMaxFilenameLength;  // keeps the extension, which is at the end
   while (!is_utf8(std::string_view(out).substr(cut))) ++cut;
   return out.substr(cut);
+}
+
+std::string relative_filename(std::string_view path) {
+  std::string relative;
+  while (!path.empty()) {
+    const auto end = std::min(path.find_first_of("/\\"), path.size());
+    const std::string part = base_filename(path.substr(0, end));
+    if (!part.empty() && !part.ends_with(':')) relative += (relative.empty() ? "" : "/") + part;
+    path.remove_prefix(std::min(end + 1, path.size()));
+  }
+  return relative;
 }
 
 }  // namespace strata

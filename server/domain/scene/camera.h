@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "domain/scene/model_part.h"
 
 namespace strata {
 
@@ -21,6 +22,8 @@ struct Camera {
   // Planes in world coordinates that cut the model open, at most kMaxSectionPlanes. A point is
   // neither visible nor painted if a x + b y + c z + d < 0 for one of the planes.
   std::vector<glm::dvec4> section{};
+  // Parts of the model that are neither visible nor painted.
+  PartSet hidden_parts{};
   bool operator==(const Camera&) const = default;
 };
 

@@ -37,14 +37,16 @@ std::string_view name(ScaleReason reason) {
     case ScaleReason::format: return "format";
     case ScaleReason::comment: return "comment";
     case ScaleReason::coordinates: return "coordinates";
+    case ScaleReason::parts: return "parts";
     case ScaleReason::size: return "size";
     default: return "shape";
   }
 }
 
 std::optional<ScaleReason> parse_scale_reason(std::string_view text) {
-  for (ScaleReason reason : {ScaleReason::given, ScaleReason::format, ScaleReason::comment,
-                             ScaleReason::coordinates, ScaleReason::size, ScaleReason::shape})
+  for (ScaleReason reason :
+       {ScaleReason::given, ScaleReason::format, ScaleReason::comment, ScaleReason::coordinates,
+        ScaleReason::size, ScaleReason::shape, ScaleReason::parts})
     if (name(reason) == text) return reason;
   return std::nullopt;
 }
@@ -201,6 +203,7 @@ nlohmann::json to_json(const Model& model, const std::string& project_slug) {
   if (model.proposal) json["proposal"] = to_json(*model.proposal);
   if (model.open_edges) json["open_edges"] = to_json(*model.open_edges, model.metres());
   if (model.from_points) json["from_points"] = to_json(*model.from_points, model.metres());
+  if (!model.parts.empty()) json["parts"] = to_json(model.parts, model.metres());
   return json;
 }
 

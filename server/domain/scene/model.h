@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/ids.h"
 #include "domain/people/role.h"
+#include "domain/scene/model_part.h"
 
 namespace strata {
 
@@ -58,7 +59,7 @@ struct AtlasReport {
 };
 
 // The source of a proposed unit or up direction.
-enum class ScaleReason { given, format, comment, coordinates, size, shape };
+enum class ScaleReason { given, format, comment, coordinates, size, shape, parts };
 std::string_view name(ScaleReason reason);
 std::optional<ScaleReason> parse_scale_reason(std::string_view name);
 
@@ -138,6 +139,7 @@ struct Model {
   // nullopt for models that were imported before the edges were measured.
   std::optional<OpenEdges> open_edges;
   std::optional<SurfaceFromPoints> from_points;  // nullopt: the file contained triangles
+  std::vector<ModelPart> parts;                  // empty: the model was imported from one scan
   std::vector<SourceFile> source_files;
   // The lowest role that may get the source files or equivalent data.
   Role source_download = Role::annotator;

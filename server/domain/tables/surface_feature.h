@@ -27,6 +27,7 @@ struct SurfaceFeature {
 struct KeyFeature {  // a feature of the record with the key
   std::int64_t key = 0;
   SurfaceFeature feature;
+  int part = 0;  // the model's part at the first position, as determined by an open room
   bool operator==(const KeyFeature&) const = default;
 };
 

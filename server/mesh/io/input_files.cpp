@@ -16,6 +16,9 @@ namespace {
 constexpr std::string_view kTaken =
     "send a PLY, OBJ, STL, glTF, GLB or LAS file, alone, with its textures, or in a zip archive";
 
+// The field of the error for several scans. The page then offers to import them as parts.
+constexpr const char* kPartsField = "parts";
+
 // The usual formats of laser scanners that the server cannot read, and what to do with them.
 std::string advice_for(std::string_view end) {
   static constexpr std::string_view kCompressed[] = {".laz", ".e57", ".pts", ".ptx",
@@ -50,16 +53,18 @@ int common_parts(std::string_view a, std::string_view b) {
   return parts;
 }
 
+// Returns the number of folders that two paths have in common, counted from the first one.
+int common_folders(std::string_view a, std::string_view b) {
+  int folders = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()) && a[i] == b[i]; ++i)
+    folders += a[i] == '/' || a[i] == '\\' ? 1 : 0;
+  return folders;
+}
+
 std::vector<std::string> names_of(std::span<const InputFiles::Entry> entries) {
   std::vector<std::string> names;
   for (const auto& entry : entries) names.push_back(entry.name);
   return names;
-}
-
-// The folder of an upload has free space. A user's folder may be read-only.
-std::filesystem::path scratch_beside(const std::filesystem::path& file) {
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  return ::access(folder.c_str(), W_OK) == 0 ? folder : std::filesystem::temp_directory_path();
 }
 
 // Lists the names with their folders, because scans in different folders often have the same name.
@@ -71,6 +76,11 @@ std::string listed(std::span<const std::string> filenames, std::span<const std::
 }
 
 }  // namespace
+
+std::filesystem::path scratch_beside(const std::filesystem::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  return ::access(folder.c_str(), W_OK) == 0 ? folder : std::filesystem::temp_directory_path();
+}
 
 InputKind input_kind(std::string_view filename) {
   static constexpr std::pair<std::string_view, InputKind> kKinds[] = {
@@ -85,7 +95,7 @@ InputKind input_kind(std::string_view filename) {
 
 bool is_mesh(InputKind kind) { return kind != InputKind::companion && kind != InputKind::zip; }
 
-Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
+Result<std::vector<std::size_t>> pick_scans(std::span<const std::string> filenames, bool parts) {
   std::vector<std::size_t> meshes, archives;
   for (std::size_t i = 0; i < filenames.size(); ++i) {
     const InputKind kind = input_kind(filenames[i]);
@@ -93,12 +103,20 @@ Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
     if (kind == InputKind::zip) archives.push_back(i);
   }
   const auto& scans = meshes.empty() ? archives : meshes;
-  if (scans.size() == 1) return scans.front();
+  if (scans.size() == 1 || (parts && scans.size() <= kMaxModelParts && !meshes.empty()))
+    return scans;
+  if (parts && scans.size() > kMaxModelParts)
+    return fail(ErrorCode::invalid, "Too many scans",
+                "The upload contains " + std::to_string(scans.size()) +
+                    " scans. A model can have at most " + std::to_string(kMaxModelParts) +
+                    " parts. Join some scans, or divide them between several models.",
+                "file");
   if (scans.size() > 1)
     return fail(ErrorCode::invalid, "More than one scan",
-                "One import creates one model, but the upload contains several meshes: " +
-                    listed(filenames, scans) + ". Import them one by one.",
-                "filename");
+                "One import creates one model, but the upload contains several scans: " +
+                    listed(filenames, scans) + ". Import them one by one" +
+                    (meshes.empty() ? "." : ", or with `parts=true` as the parts of one model."),
+                kPartsField);
   if (filenames.empty())
     return fail(ErrorCode::invalid, "No file",
                 "The upload contains no file to import. Please " + std::string(kTaken) + ".",
@@ -119,7 +137,8 @@ Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
               "filename");
 }
 
-Result<InputFiles> InputFiles::open(std::span<const InputFile> files, Progress& progress) {
+Result<InputFiles> InputFiles::open(std::span<const InputFile> files, Progress& progress,
+                                    bool parts) {
   std::vector<Entry> entries;
   entries.reserve(files.size());
   for (const InputFile& file : files) {
@@ -129,37 +148,47 @@ Result<InputFiles> InputFiles::open(std::span<const InputFile> files, Progress& 
     entries.push_back({file.filename, bytes, std::move(*mapped)});
   }
   return of(std::move(entries),
-            files.empty() ? std::filesystem::path() : scratch_beside(files[0].path), progress);
+            files.empty() ? std::filesystem::path() : scratch_beside(files[0].path), progress,
+            parts);
 }
 
 Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesystem::path& scratch,
-                                  Progress& progress) {
-  auto scan = pick_scan(names_of(entries));
-  if (!scan) return tl::unexpected(scan.error());
-  if (input_kind(entries[*scan].name) == InputKind::zip) {
-    if (entries[*scan].bytes.empty()) return refuse_file("The file is empty.");
-    auto unpacked = STRATA_TRY(unpack_archive(entries[*scan].bytes, scratch, progress));
+                                  Progress& progress, bool parts) {
+  auto scans = pick_scans(names_of(entries), parts);
+  if (!scans) return tl::unexpected(scans.error());
+  if (const Entry& archive = entries[scans->front()]; input_kind(archive.name) == InputKind::zip) {
+    if (archive.bytes.empty()) return refuse_file("The file is empty.");
+    auto unpacked = STRATA_TRY(unpack_archive(archive.bytes, scratch, progress));
     entries = std::move(unpacked);
-    scan = pick_scan(names_of(entries));
-    if (!scan) return refuse_file("In the zip: " + scan.error().detail);
-    if (input_kind(entries[*scan].name) == InputKind::zip)
+    scans = pick_scans(names_of(entries), parts);
+    if (!scans) {
+      auto refused = refuse_file("In the zip: " + scans.error().detail);
+      if (scans.error().field == kPartsField) refused.value().field = kPartsField;
+      return refused;
+    }
+    if (input_kind(entries[scans->front()].name) == InputKind::zip)
       return refuse_file("The zip contains another zip but no mesh. Unpack the outer zip first.");
   }
   InputFiles files;
   files.entries_ = std::move(entries);
-  files.scan_ = *scan;
+  files.scans_ = std::move(*scans);
   return files;
 }
 
 const InputFiles::Entry* InputFiles::find(std::string_view reference) const {
   const Entry* best = nullptr;
-  int most = 0;
+  int most = 0, most_folders = 0;
+  const std::string scan_name = mended_utf8(scan().name);
   // The name of a referenced file may have been damaged by a wrong encoding.
   const std::string target = mended_utf8(reference);
   for (const Entry& entry : entries_) {
-    const int common = common_parts(mended_utf8(entry.name), target);
-    if (common <= most) continue;
+    const std::string name = mended_utf8(entry.name);
+    const int common = common_parts(name, target);
+    if (common == 0 || common < most) continue;
+    const int folders = common_folders(name, scan_name);
+    if (common == most && folders <= most_folders) continue;
     most = common;
+    most_folders = folders;
     best = &entry;
   }
   return best;

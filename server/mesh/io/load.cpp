@@ -1,7 +1,9 @@
 #include "mesh/io/load.h"
 
+#include "core/text/utf8.h"
 #include "mesh/io/file_comments.h"
 #include "mesh/io/file_nature.h"
+#include "mesh/io/join_parts.h"
 #include "mesh/io/load_formats.h"
 #include "mesh/io/texture_loader.h"
 
@@ -38,14 +40,10 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
   return loaded;
 }
 
-}  // namespace
-
-// Takes ownership of the files and unmaps them before `repair` needs the memory.
-Result<LoadedMesh> load_mesh(InputFiles files, Progress& progress, const LoadOptions& options) {
-  auto loaded = STRATA_TRY([&] {
-    const InputFiles opened = std::move(files);
-    return parse(opened, progress);
-  }());
+// Parses the chosen scan, and unmaps the files of a single scan before `repair` needs the memory.
+Result<LoadedMesh> load_scan(InputFiles& files, Progress& progress, const LoadOptions& options) {
+  auto loaded = STRATA_TRY(parse(files, progress));
+  if (files.scan_count() == 1) files = {};
   if (loaded.mesh.triangles.empty()) {
     loaded.from_points = STRATA_TRY(
         surface_from_points(loaded.mesh, loaded.point_normals, options.points, progress));
@@ -55,10 +53,34 @@ Result<LoadedMesh> load_mesh(InputFiles files, Progress& progress, const LoadOpt
   return loaded;
 }
 
+}  // namespace
+
+Result<LoadedMesh> load_mesh(InputFiles files, Progress& progress, const LoadOptions& options) {
+  const std::size_t count = files.scan_count();
+  if (count == 1) return load_scan(files, progress, options);
+  std::vector<LoadedPart> parts;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Progress::Share share(progress, static_cast<double>(i) / static_cast<double>(count),
+                                static_cast<double>(i + 1) / static_cast<double>(count));
+    files.choose_scan(i);
+    auto loaded = load_scan(files, progress, options);
+    if (!loaded && loaded.error().code != ErrorCode::cancelled) {
+      Error error = loaded.error();
+      error.detail = mended_utf8(files.scan().name) + ": " + error.detail;
+      return tl::unexpected(std::move(error));
+    }
+    if (!loaded) return loaded;
+    parts.push_back({files.scan().name, std::move(*loaded)});
+  }
+  return join_parts(std::move(parts));
+}
+
 Result<LoadedMesh> load_mesh(std::span<const InputFile> files, Progress& progress,
                              const LoadOptions& options) {
-  auto opened = STRATA_TRY(InputFiles::open(files, progress));
-  return load_mesh(std::move(opened), progress, options);
+  auto opened = STRATA_TRY(InputFiles::open(files, progress, options.parts));
+  LoadOptions with_folder = options;
+  if (!files.empty()) with_folder.points.folder = scratch_beside(files[0].path);
+  return load_mesh(std::move(opened), progress, with_folder);
 }
 
 Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename,

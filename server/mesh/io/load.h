@@ -30,19 +30,23 @@ struct LoadedMesh {
   std::vector<glm::vec3> point_normals = {};
   // Set if the file contains points without triangles, from which the surface was made.
   std::optional<SurfaceFromPoints> from_points = {};
+  std::vector<ModelPart> parts = {};  // empty: one scan
 };
 
 struct LoadOptions {
   double weld_distance = 0;  // in file units; vertices within this distance are also joined
   PointOptions points = {};  // used if the file contains points without triangles
+  // The files may contain several scans with common coordinates. See join_parts.
+  bool parts = false;
 };
 
 // Returns true if this repair means that the file had a fault. Joining equal vertices does not
 // indicate a fault, because some formats always repeat vertices.
 bool is_fault(const Repair& repair);
 
-// Reads the mesh from the files of one scan, together with the files that the mesh uses. The
-// extension of the mesh's name determines the format:
+// Reads the mesh from the files of one scan, together with the files that the mesh uses. With
+// LoadOptions::parts, reads several scans in this way and joins them (join_parts). The extension of
+// the mesh's name determines the format:
 //
 // - PLY: ASCII and binary with both byte orders, any scalar types and any order of elements; colors
 //   of vertices or faces in 8 or 16 bits or as real numbers; texture coordinates of vertices or

@@ -196,9 +196,7 @@ Result<SurfaceFromPoints> surface_from_points(TriangleMesh& mesh, std::vector<gl
                        " vertices but no triangle. A surface can be made from " +
                        std::to_string(kLeastMeshedPoints) +
                        " points or more. Import a mesh, or more points.");
-  // The folder of an upload has free space. A user's folder may be read-only.
-  const bool is_writable = ::access(options.folder.c_str(), W_OK) == 0;
-  const fs::path folder = is_writable ? options.folder : fs::temp_directory_path();
+  const fs::path folder = options.folder.empty() ? fs::temp_directory_path() : options.folder;
   const std::string name = to_string(random_uuid());
   const TemporaryFile points(folder / (name + ".points")), surface(folder / (name + ".surface"));
   progress.report(kParsedShare, "Thinning the points");

@@ -15,8 +15,7 @@ struct PointOptions {
   double cell = 0;
   // The widest gap between points that the surface closes. 0: 12 × the distance between points.
   double gap = 0;
-  // The folder for two temporary files, with room for twice the points. If it is empty or
-  // read-only, the system's folder is used.
+  // The folder for two temporary files, with room for twice the points. Empty: the system's.
   std::filesystem::path folder{};
 };
 

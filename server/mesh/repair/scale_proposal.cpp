@@ -83,7 +83,8 @@ ScaleProposal propose_scale(const LoadedMesh& loaded, const std::string& crs) {
   const auto up = stated_up(loaded.comments);
   const Box box = box_of(loaded.mesh);
   const bool surveyed = !crs.empty() || is_surveyed(box);
-  if (unit) {
+  // The coordinates of parts are in `loaded.unit`, although files may state others.
+  if (unit && (loaded.parts.empty() || loaded.unit == unit->value)) {
     proposal.unit = unit->value;
     proposal.unit_reason = ScaleReason::comment;
     proposal.unit_comment = unit->comment;
@@ -104,9 +105,9 @@ ScaleProposal propose_scale(const LoadedMesh& loaded, const std::string& crs) {
   } else if (!loaded.up.empty()) {
     proposal.up = loaded.up;
     proposal.up_reason = ScaleReason::format;
-  } else if (surveyed) {
+  } else if (surveyed || !loaded.parts.empty()) {
     proposal.up = "z";
-    proposal.up_reason = ScaleReason::coordinates;
+    proposal.up_reason = surveyed ? ScaleReason::coordinates : ScaleReason::parts;
     proposal.up_confidence = kSurveyed;
   } else {
     const auto shares = up_shares(loaded.mesh);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "mesh/surface/uv_islands.h"
 
@@ -51,9 +52,10 @@ std::uint64_t hilbert_code(std::array<std::uint32_t, 3> cell) {
          spread_bits(cell[2] ^ turn);
 }
 
-// Returns the triangle numbers in the order of a Hilbert curve through the centroids. Neighbors on
-// the surface are near each other. A run of triangles is compact, because the curve never jumps.
-// This order is good for GPU caches, culling clusters, compression and the search tree.
+// Returns the triangle numbers part by part, in each part in the order of a Hilbert curve through
+// the centroids. Neighbors on the surface are near each other. A run of triangles is compact,
+// because the curve never jumps. This order is good for GPU caches, culling clusters, compression
+// and the search tree.
 std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dvec3& low,
                                          const glm::dvec3& extent) {
   struct Entry {
@@ -70,9 +72,16 @@ std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dv
     const glm::uvec3 cell(glm::clamp((centroid - low) * scale, 0.0, double{kCurveEnd}));
     entries[t] = {hilbert_code({cell.x, cell.y, cell.z}), t};
   }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.code != b.code ? a.code < b.code : a.triangle < b.triangle;
-  });
+  const auto sort = [&](std::size_t begin, std::size_t end) {
+    std::sort(entries.begin() + static_cast<std::ptrdiff_t>(begin),
+              entries.begin() + static_cast<std::ptrdiff_t>(end),
+              [](const Entry& a, const Entry& b) {
+                return a.code != b.code ? a.code < b.code : a.triangle < b.triangle;
+              });
+  };
+  std::size_t begin = 0;
+  for (const std::size_t end : mesh.part_ends) sort(std::exchange(begin, end), end);
+  sort(begin, entries.size());
   std::vector<std::uint32_t> order(entries.size());
   std::transform(entries.begin(), entries.end(), order.begin(),
                  [](const Entry& e) { return e.triangle; });
@@ -186,7 +195,38 @@ void find_boxes(Geometry& geometry) {
 
 std::size_t Geometry::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return of(positions) + of(vertices) + of(indices) + of(clusters);
+  return of(positions) + of(vertices) + of(indices) + of(clusters) + of(part_ends);
+}
+
+int Geometry::part_of(std::uint32_t triangle) const {
+  return static_cast<int>(std::ranges::upper_bound(part_ends, triangle) - part_ends.begin());
+}
+
+std::vector<TriangleRange> visible_ranges(const Geometry& geometry, const PartSet& hidden_parts) {
+  const auto all = static_cast<std::uint32_t>(geometry.triangle_count());
+  if (geometry.part_ends.empty()) return {{0, all}};
+  std::vector<TriangleRange> ranges;
+  std::uint32_t begin = 0;
+  for (std::size_t part = 0; part < geometry.part_ends.size(); ++part) {
+    const std::uint32_t end = geometry.part_ends[part];
+    if (!hidden_parts.test(part) && begin < end) {
+      if (!ranges.empty() && ranges.back().end == begin)
+        ranges.back().end = end;
+      else
+        ranges.push_back({begin, end});
+    }
+    begin = end;
+  }
+  return ranges;
+}
+
+std::vector<glm::dvec3> positions_without(const Geometry& geometry, const PartSet& hidden_parts) {
+  std::vector<glm::dvec3> positions;
+  for (const auto [begin, end] : visible_ranges(geometry, hidden_parts))
+    for (std::size_t i = 3 * std::size_t{begin}; i < 3 * std::size_t{end}; ++i)
+      positions.push_back(
+          geometry.positions[geometry.vertices[geometry.indices[i]].position_index]);
+  return positions;
 }
 
 double surface_area(const Geometry& geometry) {
@@ -219,6 +259,7 @@ Geometry build_geometry(const TriangleMesh& mesh, const Atlas& atlas) {
     for (std::size_t k = 0; k < 3; ++k)
       geometry.indices.push_back(splitter.vertex_for(3 * std::size_t{triangle} + k));
   }
+  geometry.part_ends = mesh.part_ends;
   find_boxes(geometry);
   return geometry;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "domain/scene/model_part.h"
 #include "mesh/atlas/atlas.h"
 #include "mesh/surface/triangle_mesh.h"
 
@@ -41,12 +42,25 @@ struct Geometry {
   glm::vec3 box_min{0}, box_max{0};    // in model space
   // one for each run of kTrianglesPerCluster triangles; the last run has fewer
   std::vector<ClusterBox> clusters;
+  // The end of each part's triangles, ascending (domain/scene/model_part.h). Parts share no vertex
+  // and no position. Empty: the model is one part.
+  std::vector<std::uint32_t> part_ends;
 
   static constexpr std::size_t kTrianglesPerCluster = 1024;
 
   std::size_t triangle_count() const { return indices.size() / 3; }
   std::size_t bytes() const;
+  int part_of(std::uint32_t triangle) const;  // 0 if the model is one part
 };
+
+// A run of triangles.
+struct TriangleRange {
+  std::uint32_t begin = 0, end = 0;
+};
+// Returns the triangles of all parts except the hidden ones, as ranges that do not touch.
+std::vector<TriangleRange> visible_ranges(const Geometry& geometry, const PartSet& hidden_parts);
+// Returns the positions of all parts except the hidden ones, once for each corner of a triangle.
+std::vector<glm::dvec3> positions_without(const Geometry& geometry, const PartSet& hidden_parts);
 
 // Computes the boxes from vertices and indices.
 void find_boxes(Geometry& geometry);

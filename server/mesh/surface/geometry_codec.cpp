@@ -11,7 +11,8 @@
 // The stored form, little-endian:
 //   "SGEO" · version u8 · zstd frame (with content size and checksum) of
 //   u64 positions, vertices, indices · f64 origin[3] · planes(positions x, y, z as u64) ·
-//   planes(vertex normal, uv.x, uv.y, color, position index as u32) · planes(index codes as u32)
+//   planes(vertex normal, uv.x, uv.y, color, position index as u32) · planes(index codes as u32) ·
+//   only in version 3: u32 ends of parts
 // "planes" is a column of integers. Each integer is replaced by its zigzag difference from the
 // previous one. The differences are stored byte plane by byte plane. Neighbors on the Hilbert curve
 // differ little, so the high planes are almost entirely zero. Vertex positions and the box are
@@ -21,12 +22,13 @@ namespace strata::mesh {
 namespace {
 
 constexpr char kMagic[4] = {'S', 'G', 'E', 'O'};
-// In version 1 the highest byte of a color was the alpha of the file, which was not used.
-constexpr std::uint8_t kVersion = 2, kVersionWithoutOpenness = 1;
+// In version 1 the highest byte of a color was the alpha of the file, which was not used. A
+// geometry without parts has version 2, which earlier servers can read.
+constexpr std::uint8_t kVersion = 2, kVersionWithoutOpenness = 1, kVersionWithParts = 3;
 constexpr std::uint32_t kOpen = 0xff000000u;
 constexpr int kLevel = 1;
 constexpr std::size_t kHeaderBytes = 3 * 8 + 3 * 8;
-constexpr std::size_t kPositionBytes = 3 * 8, kVertexBytes = 5 * 4, kIndexBytes = 4;
+constexpr std::size_t kPositionBytes = 3 * 8, kVertexBytes = 5 * 4, kIndexBytes = 4, kPartBytes = 4;
 
 tl::unexpected<Error> damaged(const std::string& what) {
   return fail(ErrorCode::internal, "Stored geometry damaged",
@@ -75,7 +77,8 @@ std::vector<std::uint8_t> serialize(const Geometry& geometry) {
   const std::size_t positions = geometry.positions.size(), vertices = geometry.vertices.size(),
                     indices = geometry.indices.size();
   std::vector<std::uint8_t> bytes(kHeaderBytes + positions * kPositionBytes +
-                                  vertices * kVertexBytes + indices * kIndexBytes);
+                                  vertices * kVertexBytes + indices * kIndexBytes +
+                                  geometry.part_ends.size() * kPartBytes);
   std::uint8_t* out = bytes.data();
   const std::uint64_t counts[3] = {positions, vertices, indices};
   std::memcpy(out, counts, sizeof counts);
@@ -96,20 +99,50 @@ std::vector<std::uint8_t> serialize(const Geometry& geometry) {
   write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return v[i].color; });
   write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return v[i].position_index; });
   write_planes<std::uint32_t>(out, indices, [&](std::size_t i) { return geometry.indices[i]; });
+  if (!geometry.part_ends.empty())
+    std::memcpy(out, geometry.part_ends.data(), geometry.part_ends.size() * kPartBytes);
   return bytes;
 }
 
-Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
+// Takes the ends of parts from the rest of the content. Returns false if they are not ascending, or
+// if parts share a vertex or a position.
+bool take_parts(std::span<const std::uint8_t> rest, Geometry& geometry) {
+  std::vector<std::uint32_t>& ends = geometry.part_ends;
+  ends.resize(rest.size() / kPartBytes);
+  std::memcpy(ends.data(), rest.data(), rest.size());
+  if (!std::ranges::is_sorted(ends) || ends.back() != geometry.triangle_count()) return false;
+  std::uint32_t first_vertex = 0, first_position = 0, begin = 0;
+  for (const std::uint32_t end : ends) {
+    std::uint32_t end_vertex = first_vertex, end_position = first_position;
+    for (std::size_t i = 3 * std::size_t{begin}; i < 3 * std::size_t{end}; ++i) {
+      const std::uint32_t vertex = geometry.indices[i];
+      const std::uint32_t position = geometry.vertices[vertex].position_index;
+      if (vertex < first_vertex || position < first_position) return false;
+      end_vertex = std::max(end_vertex, vertex + 1);
+      end_position = std::max(end_position, position + 1);
+    }
+    begin = end;
+    first_vertex = end_vertex;
+    first_position = end_position;
+  }
+  return true;
+}
+
+Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes, bool has_parts) {
   if (bytes.size() < kHeaderBytes) return damaged("it is incomplete");
   std::uint64_t counts[3];
   std::memcpy(counts, bytes.data(), sizeof counts);
   const std::uint64_t positions = counts[0], vertices = counts[1], indices = counts[2];
   constexpr std::uint64_t kMax = 0xffffffffu;
-  if (positions > kMax || vertices > kMax || indices > kMax || indices % 3 != 0 ||
-      bytes.size() != kHeaderBytes + positions * kPositionBytes + vertices * kVertexBytes +
-                          indices * kIndexBytes) {
+  const std::uint64_t used =
+      kHeaderBytes + positions * kPositionBytes + vertices * kVertexBytes + indices * kIndexBytes;
+  const std::uint64_t rest = bytes.size() - std::min<std::uint64_t>(used, bytes.size());
+  const bool fits =
+      bytes.size() >= used &&
+      (has_parts ? rest > 0 && rest <= kMaxModelParts * kPartBytes && rest % kPartBytes == 0
+                 : rest == 0);
+  if (positions > kMax || vertices > kMax || indices > kMax || indices % 3 != 0 || !fits)
     return damaged("its counts do not match its size");
-  }
   Geometry geometry;
   double origin[3];
   std::memcpy(origin, bytes.data() + sizeof counts, sizeof origin);
@@ -147,6 +180,8 @@ Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
     in_range = in_range && bits < vertices;
   });
   if (!in_range) return damaged("an index is out of range");
+  if (has_parts && !take_parts(std::span(bytes).subspan(used), geometry))
+    return damaged("its parts are not separate");
   for (Vertex& vertex : v) {
     vertex.position = glm::vec3(geometry.positions[vertex.position_index] - geometry.origin);
     finite = finite && std::isfinite(vertex.position.x) && std::isfinite(vertex.position.y) &&
@@ -165,7 +200,7 @@ std::vector<std::uint8_t> encode_geometry(const Geometry& geometry) {
   const std::size_t prefix = sizeof kMagic + 1;
   std::vector<std::uint8_t> result(prefix + ZSTD_compressBound(content.size()));
   std::copy(std::begin(kMagic), std::end(kMagic), result.begin());
-  result[sizeof kMagic] = kVersion;
+  result[sizeof kMagic] = geometry.part_ends.empty() ? kVersion : kVersionWithParts;
   const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
                                                                      &ZSTD_freeCCtx);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel);
@@ -183,10 +218,9 @@ Result<Geometry> decode_geometry(std::span<const std::uint8_t> bytes) {
   if (bytes.size() <= prefix || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
     return damaged("it does not begin like stored geometry");
   const std::uint8_t version = bytes[sizeof kMagic];
-  if (version != kVersion && version != kVersionWithoutOpenness) {
+  if (version != kVersion && version != kVersionWithoutOpenness && version != kVersionWithParts)
     return damaged("it has version " + std::to_string(version) +
-                   ", this server reads versions 1 and 2");
-  }
+                   ", this server reads versions 1 to 3");
   const std::span<const std::uint8_t> frame = bytes.subspan(prefix);
   const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
   // Geometry never compresses by a factor of 1000. A larger size indicates damage, and no memory is
@@ -201,7 +235,7 @@ Result<Geometry> decode_geometry(std::span<const std::uint8_t> bytes) {
   const std::size_t read =
       ZSTD_decompress(content.data(), content.size(), frame.data(), frame.size());
   if (ZSTD_isError(read) || read != size) return damaged("its checksum does not match");
-  auto geometry = STRATA_TRY(deserialize(content));
+  auto geometry = STRATA_TRY(deserialize(content, version == kVersionWithParts));
   if (version == kVersionWithoutOpenness)
     for (Vertex& vertex : geometry.vertices) vertex.color |= kOpen;
   return geometry;

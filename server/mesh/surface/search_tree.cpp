@@ -317,16 +317,24 @@ std::optional<SearchTree::Hit> SearchTree::nearest_facing(const glm::vec3& point
 }
 
 std::optional<SearchTree::Hit> SearchTree::first_hit(const glm::vec3& origin,
-                                                     const glm::vec3& direction) const {
+                                                     const glm::vec3& direction,
+                                                     const PartSet& hidden_parts) const {
   const double length = glm::length(glm::dvec3(direction));
   if (!is_finite(origin) || !is_finite(direction) || !(length > 0)) return std::nullopt;
   const PreparedRay ray(glm::dvec3(origin), glm::dvec3(direction) / length);
+  const Geometry& geometry = *impl_->geometry;
+  const bool hides = hidden_parts.any() && !geometry.part_ends.empty();
+  const auto is_hidden = [&](std::size_t triangle) {
+    return hidden_parts.test(
+        static_cast<std::size_t>(geometry.part_of(static_cast<std::uint32_t>(triangle))));
+  };
   double limit = std::numeric_limits<double>::max();
   std::size_t found = std::numeric_limits<std::size_t>::max();
   glm::dvec3 found_weights(0);
   impl_->search<double>(
       limit, [&](const Boxes& boxes) { return ray.enter(boxes, limit); },
       [&](std::size_t triangle) {
+        if (hides && is_hidden(triangle)) return;
         const auto [a, b, c] = impl_->corners(triangle);
         glm::dvec3 weights(0);
         const auto distance = ray.hit(a, b, c, weights);

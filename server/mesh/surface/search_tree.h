@@ -30,7 +30,9 @@ class SearchTree {
   // is the cosine of this angle. The search therefore finds the correct side of a thin wall.
   std::optional<Hit> nearest_facing(const glm::vec3& point, float max_distance,
                                     const glm::vec3& normal, float least_cos) const;
-  std::optional<Hit> first_hit(const glm::vec3& origin, const glm::vec3& direction) const;
+  // A ray passes through hidden parts.
+  std::optional<Hit> first_hit(const glm::vec3& origin, const glm::vec3& direction,
+                               const PartSet& hidden_parts = {}) const;
 
  private:
   struct Impl;

@@ -37,6 +37,39 @@ tl::unexpected<Error> too_few(std::size_t possible) {
               "max_triangles");
 }
 
+// Returns the end of the vertices of each part. Vertices are numbered by first use, so each part
+// has a range of them.
+std::vector<std::uint32_t> vertex_ends_of_parts(const Geometry& geometry) {
+  std::vector<std::uint32_t> ends;
+  std::size_t index = 0;
+  for (const std::uint32_t part_end : geometry.part_ends) {
+    std::uint32_t end = ends.empty() ? 0 : ends.back();
+    for (; index < 3 * std::size_t{part_end}; ++index)
+      end = std::max(end, geometry.indices[index] + 1);
+    ends.push_back(end);
+  }
+  return ends;
+}
+
+// Returns the triangles part by part, otherwise in the same order, and sets the ends of the parts.
+std::vector<std::uint32_t> by_part(const Geometry& source, std::span<const std::uint32_t> indices,
+                                   std::vector<std::uint32_t>& part_ends) {
+  const std::vector<std::uint32_t> vertex_ends = vertex_ends_of_parts(source);
+  std::vector<std::vector<std::uint32_t>> of_part(vertex_ends.size());
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    auto& part = of_part[static_cast<std::size_t>(
+        std::ranges::upper_bound(vertex_ends, indices[i]) - vertex_ends.begin())];
+    part.insert(part.end(), {indices[i], indices[i + 1], indices[i + 2]});
+  }
+  std::vector<std::uint32_t> ordered;
+  ordered.reserve(indices.size());
+  for (const auto& part : of_part) {
+    ordered.insert(ordered.end(), part.begin(), part.end());
+    part_ends.push_back(static_cast<std::uint32_t>(ordered.size() / 3));
+  }
+  return ordered;
+}
+
 }  // namespace
 
 Geometry with_triangles(const Geometry& source, std::span<const std::uint32_t> indices) {
@@ -44,6 +77,11 @@ Geometry with_triangles(const Geometry& source, std::span<const std::uint32_t> i
   Geometry result;
   result.origin = source.origin;
   result.indices.reserve(indices.size());
+  std::vector<std::uint32_t> ordered;
+  if (!source.part_ends.empty()) {
+    ordered = by_part(source, indices, result.part_ends);
+    indices = ordered;
+  }
   std::vector<std::uint32_t> vertex_of(source.vertices.size(), kNone),
       position_of(source.positions.size(), kNone);
   for (const std::uint32_t old : indices) {

@@ -11,8 +11,8 @@
 
 namespace strata::mesh {
 
-// Returns a geometry of these triangles, three indices each. Its vertices and positions are those
-// that the triangles use, numbered by first use.
+// Returns a geometry of these triangles, three indices each, with the same parts. Its vertices and
+// positions are those that the triangles use, numbered by first use.
 Geometry with_triangles(const Geometry& source, std::span<const std::uint32_t> indices);
 
 struct Collapsed {

@@ -41,6 +41,8 @@ struct TriangleMesh {
   std::vector<std::uint16_t> triangle_materials;
   std::vector<Material> materials;
   std::vector<Texture> textures;
+  // The end of each part's triangles, ascending. Parts share no position. Empty: one part.
+  std::vector<std::uint32_t> part_ends;
   // vertex colors multiply materials (glTF); if false, a texture hides vertex colors
   bool colors_tint_materials = false;
 

@@ -211,6 +211,7 @@ void SurfaceBake::assign_slots(int threads) {
   if (purpose_ == BakeFor::owners) return;
   map_.packed_box.resize(slots);
   map_.bounds_of_slot.resize(slots);
+  if (!geometry_.part_ends.empty()) map_.part.assign(slots * 64, 0);
   map_.sums_of_slot.resize(slots);
   box_of_slot_.resize(slots);
 }
@@ -287,6 +288,7 @@ void SurfaceBake::place_surface(int band) {
       weights_[texel] = plane.packed_weights(x + 0.5, y + 0.5);
     else
       position_[texel] = plane.at(x + 0.5, y + 0.5);
+    if (!map_.part.empty()) map_.part[texel] = static_cast<std::uint8_t>(geometry_.part_of(t));
   };
   std::vector<std::uint32_t> shared;
   for (const std::uint32_t t : triangles_of_band_[band]) {
@@ -330,6 +332,7 @@ void SurfaceBake::place_gutter(int band) {
           const Borrowed borrowed{static_cast<std::uint32_t>(texel_index(x, y)),
                                   static_cast<std::uint32_t>(texel_index(x + o.x, y + o.y))};
           if (purpose_ == BakeFor::map) position_[borrowed.gutter] = position_[borrowed.owner];
+          if (!map_.part.empty()) map_.part[borrowed.gutter] = map_.part[borrowed.owner];
           borrowed_[band].push_back(borrowed);
           break;
         }

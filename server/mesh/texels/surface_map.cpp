@@ -23,6 +23,14 @@ TileMask SurfaceMap::surface_in_tile(TileAddress tile) const {
   return gather_tile_bits(*this, tile, [&](std::uint32_t slot) { return surface_mask[slot]; });
 }
 
+std::uint64_t SurfaceMap::texels_of_parts(std::uint32_t slot, const PartSet& parts) const {
+  if (part.empty()) return parts.test(0) ? ~std::uint64_t{0} : 0;
+  std::uint64_t texels = 0;
+  for (std::size_t i = 0; i < 64; ++i)
+    texels |= std::uint64_t{parts.test(part[std::size_t{slot} * 64 + i])} << i;
+  return texels;
+}
+
 float SurfaceMap::area_of(TileAddress tile, int texel) const {
   const SlotTexel place = slot_texel(*this, tile, texel);
   return place.slot == kNoSlot ? 0 : area[std::size_t{place.slot} * 64 + place.texel];
@@ -49,7 +57,7 @@ std::size_t SurfaceMap::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return of(slot_of_block) + of(block_of_slot) + of(packed_position) + of(packed_box) +
          of(surface_mask) + of(area) + of(sums_of_slot) + of(bounds_of_slot) + of(bounds_of_tile) +
-         tree.bytes();
+         of(part) + tree.bytes();
 }
 
 }  // namespace strata::mesh

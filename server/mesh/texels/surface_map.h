@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "domain/layers/tile.h"
+#include "domain/scene/model_part.h"
 #include "mesh/surface/block_tree.h"
 
 namespace strata {
@@ -50,6 +51,9 @@ struct SurfaceMap {
   std::vector<std::uint64_t> surface_mask;
   std::vector<float> area;  // 64 per slot, in unit²; 0 for gutter texels
 
+  // The part of each surface and gutter texel, 64 per slot. Empty: the model is one part.
+  std::vector<std::uint8_t> part;
+
   // Sums of surface texels of one slot. A sum of 64 such values in double precision loses almost
   // nothing.
   struct SlotSums {
@@ -78,6 +82,8 @@ struct SurfaceMap {
   TileMask owned_in_tile(TileAddress tile) const;  // surface and gutter texels
   TileMask surface_in_tile(TileAddress tile) const;
   float area_of(TileAddress tile, int texel) const;  // in unit²
+  // The texels of a slot that belong to one of these parts, as bits y * 8 + x.
+  std::uint64_t texels_of_parts(std::uint32_t slot, const PartSet& parts) const;
   void add_texel(SlotSums& sums, std::uint32_t slot, int texel) const;
   SlotSums sum_slot(std::uint32_t slot) const;  // the value for `sums_of_slot`
   std::size_t bytes() const;

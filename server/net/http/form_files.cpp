@@ -29,21 +29,6 @@ std::size_t find(std::string_view text, std::string_view what, std::size_t from,
   return std::string_view::npos;
 }
 
-// Keeps the sender's folders because the files of one scan refer to each other by these paths.
-// Removes parts that lead to a folder outside.
-std::string relative_filename(std::string_view name) {
-  std::string path;
-  for (std::string part; !name.empty();) {
-    const auto end = std::min(name.find_first_of("/\\"), name.size());
-    part = base_filename(name.substr(0, end));
-    const bool names_a_folder =
-        !part.empty() && part != "." && part != ".." && !part.ends_with(':');
-    if (names_a_folder) path += (path.empty() ? "" : "/") + part;
-    name.remove_prefix(std::min(end + 1, name.size()));
-  }
-  return path;
-}
-
 // Returns the value of a header from the head of a part. Returns an empty text if it is absent.
 std::string_view header_of(std::string_view head, std::string_view name) {
   while (!head.empty()) {

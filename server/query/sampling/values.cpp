@@ -119,7 +119,7 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
   if (span.begin > span.end) return off_the_model(layers);
   const glm::vec3 start(ray.origin + span.begin * ray.direction - origin), direction(ray.direction);
   if (!is_finite(start) || !is_finite(direction)) return off_the_model(layers);
-  auto hit = tree.first_hit(start, direction);
+  auto hit = tree.first_hit(start, direction, camera.hidden_parts);
   if (!hit || span.begin + hit->distance > span.end) return off_the_model(layers);
   if (eye_is_cut_away(camera) && glm::dot(hit->normal, direction) > 0)
     return off_the_model(layers);  // inside a solid

@@ -22,6 +22,7 @@ struct BlockTest {
   std::optional<FacingLimit> facing;      // used only with `depth`
   DepthBias bias;
   std::span<const glm::vec4> section;  // planes in model space that cut the model open
+  PartSet hidden_parts{};              // tested by run_edit_kernel
 };
 
 // Returns the texels of an 8 × 8 block that the stroke writes, as bits y * 8 + x. Performs the

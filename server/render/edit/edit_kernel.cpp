@@ -44,9 +44,10 @@ KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& cul
     result.tested_blocks = candidates.blocks.size();
     for (const CandidateBlock& block : candidates.blocks) {
       const auto segments = candidates.segment_lists.at(block.segments, block.segment_count);
-      const std::uint64_t bits =
+      std::uint64_t bits =
           test_block(test, map.packed_position.data() + std::size_t{block.slot} * 64,
                      map.packed_box[block.slot], segments, block.in_tool);
+      if (test.hidden_parts.any()) bits &= ~map.texels_of_parts(block.slot, test.hidden_parts);
       if (bits == 0) continue;
       put(bits, block.block_in_tile, result.written);
       const auto& bounds = block.bounds(map);

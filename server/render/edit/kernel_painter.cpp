@@ -67,6 +67,7 @@ KernelResult KernelPainter::find_written(const PaintTarget& target) {
   test.bias = depth_bias(geometry);
   const SectionPlanes section = section_in_model(stroke_.camera, geometry.origin);
   test.section = std::span(section).first(stroke_.camera.section.size());
+  test.hidden_parts = stroke_.camera.hidden_parts;
   const BlockCuller culler(target.map.map(), clip_from_model(geometry), test.width, test.height,
                            path, test.bias, test.depth ? grid_of(*test.depth) : DepthGrid{});
   static const TestBlock test_block = test_block_on(best_vector_unit());

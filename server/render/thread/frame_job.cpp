@@ -433,7 +433,7 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   surface_ =
       screen_rect({geometry.box_min, geometry.box_max}, clip, request.width, request.height, false);
   shadow_ = {};
-  if (request.style.contact_shadow && camera_.section.empty())
+  if (request.style.contact_shadow && camera_.section.empty() && camera_.hidden_parts.none())
     shadow_ = screen_rect(box_of(*request.style.contact_shadow), clip, request.width,
                           request.height, false);
   if (mean_) return {};

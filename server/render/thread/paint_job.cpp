@@ -104,7 +104,8 @@ Result<Step> PaintJob::advance(GpuScene& scene, const PaintTarget& target) {
             STRATA_TRY(scene.depths().draw_slice(depth_, target.mesh, stroke_.camera, drawn_));
         if (!complete) return Step::yield;
       }
-      if (scene.edits_on_cpu())
+      // The shader does not know the parts of texels.
+      if (scene.edits_on_cpu() || stroke_.camera.hidden_parts.any())
         painter_ = std::make_unique<KernelPainter>(stroke_, depth_);
       else
         painter_ = std::make_unique<ComputePainter>(stroke_, depth_);

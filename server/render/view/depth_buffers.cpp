@@ -13,7 +13,8 @@ constexpr std::size_t kRecent = 4;
 }  // namespace
 
 DepthKey depth_key(std::uint64_t model, const Camera& camera, int width, int height) {
-  return {model, camera.view, camera.projection, width, height, 0, camera.section};
+  return {model,  camera.view, camera.projection, width,
+          height, 0,           camera.section,    camera.hidden_parts};
 }
 
 void DepthBuffer::start(const DepthKey& new_key) {

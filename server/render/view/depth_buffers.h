@@ -23,6 +23,7 @@ struct DepthKey {
   int width = 0, height = 0;
   int level = 0;  // level of detail; edits need 0, the full mesh
   std::vector<glm::dvec4> section;
+  PartSet hidden_parts;
   bool operator==(const DepthKey&) const = default;
 };
 // Returns the key for a frame of width x height pixels, to which the camera's window is scaled.

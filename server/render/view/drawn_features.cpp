@@ -157,6 +157,7 @@ std::vector<shader::FeatureSegment> project_features(const std::vector<DrawnFeat
   const Projection projection(camera, width, height);
   std::vector<shader::FeatureSegment> pieces;
   for (const DrawnFeature& feature : features) {
+    if (camera.hidden_parts.test(static_cast<std::size_t>(feature.part))) continue;
     const bool is_point = feature.places.size() == 1;
     Style style;
     style.half_width =

@@ -12,6 +12,7 @@ namespace strata::render {
 struct DrawnFeature {
   std::vector<glm::dvec3> places;  // in world space; one position: a point
   Rgba color{};
+  int part = 0;  // of the model
 };
 
 // The widths of marks, in pixels of the camera's window.
@@ -33,8 +34,8 @@ inline constexpr double kFeatureReach_px = 1;  // on the full mesh
 double reach_on_model(const std::vector<glm::dvec3>& places, double model_size);
 
 // Returns the pieces of the marks that may be visible in a frame of `width` × `height` pixels.
-// Omits parts that are behind the eye or that the section removes. The ends of the pieces depend
-// only on the camera and the scale, so the bands of a figure match.
+// Omits hidden parts of the model, and what is behind the eye or removed by the section. The ends
+// of the pieces depend only on the camera and the scale, so the bands of a figure match.
 std::vector<shader::FeatureSegment> project_features(const std::vector<DrawnFeature>& features,
                                                      const Camera& camera, int width, int height,
                                                      const FeatureReach& reach);

@@ -73,6 +73,19 @@ glm::mat4 clip_of_part(const glm::mat4& clip_from_model, const MeshTarget& targe
   return glm::mat4(crop * glm::dmat4(clip_from_model));
 }
 
+// Adds the draws of a cluster's triangles that are in the ranges.
+void add_draws(std::uint32_t cluster, std::span<const mesh::TriangleRange> ranges,
+               std::vector<shader::DrawCommand>& commands) {
+  constexpr std::uint32_t kTriangles = mesh::Geometry::kTrianglesPerCluster;
+  const std::uint32_t first = cluster * kTriangles;
+  auto range = std::ranges::upper_bound(ranges, first, {}, &mesh::TriangleRange::end);
+  for (; range != ranges.end() && range->begin < first + kTriangles; ++range) {
+    const std::uint32_t begin = std::max(first, range->begin),
+                        end = std::min(first + kTriangles, range->end);
+    commands.push_back({3 * (end - begin), 1, 3 * begin, 0, 0});
+  }
+}
+
 }  // namespace
 
 Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader_dir,
@@ -120,15 +133,11 @@ Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view,
     glClearNamedFramebufferuiv(framebuffer, GL_COLOR, 0, background.data());
     glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, dark.data());
   }
+  const auto ranges = mesh::visible_ranges(mesh.geometry(), view.hidden_parts);
   std::vector<shader::DrawCommand> commands;
   for (const auto cluster : mesh.visible_clusters(
-           clip_of_part(view.uniforms.clip_from_model, target), view.uniforms.eye)) {
-    constexpr std::size_t kTriangles = mesh::Geometry::kTrianglesPerCluster;
-    const std::size_t first = cluster * kTriangles;
-    const auto count =
-        static_cast<std::uint32_t>(3 * std::min(kTriangles, mesh.triangle_count() - first));
-    commands.push_back({count, 1, static_cast<std::uint32_t>(3 * first), 0, 0});
-  }
+           clip_of_part(view.uniforms.clip_from_model, target), view.uniforms.eye))
+    add_draws(cluster, ranges, commands);
   progress.clusters = commands.size();
   progress.next_culling = next_culling(progress);
   progress.cleared = true;
@@ -216,6 +225,7 @@ MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& 
   std::ranges::copy(section_in_model(camera, origin), uniforms.section);
   uniforms.eye_is_cut_away = eye_is_cut_away(camera) ? 1 : 0;
   view.is_cut = !camera.section.empty();
+  view.hidden_parts = camera.hidden_parts;
   // Clip space is left-handed, so for a camera without mirroring the product is negative.
   view.is_mirrored = glm::determinant(camera.projection) * glm::determinant(camera.view) > 0;
   return view;

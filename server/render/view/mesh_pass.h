@@ -26,6 +26,7 @@ struct MeshView {
   bool is_cut = false;  // section planes cut the model
   // The camera swaps left and right, so triangles that face it are clockwise.
   bool is_mirrored = false;
+  PartSet hidden_parts{};
   // The members below are for the g-buffer only.
   LightMode light = LightMode::museum;
   bool is_exposed = false;  // brighter or darker than the stored colors
@@ -47,8 +48,10 @@ struct MeshTarget {
 
 // The progress of drawing a mesh in slices.
 struct MeshProgress {
-  gl::Buffer commands;       // one shader::DrawCommand per cluster, in drawing order
-  std::size_t clusters = 0;  // number of clusters in the window
+  // One shader::DrawCommand per cluster, in drawing order. A cluster that contains triangles of
+  // hidden and of visible parts has a command for each visible range.
+  gl::Buffer commands;
+  std::size_t clusters = 0;  // number of commands
   std::size_t next_cluster = 0;
   std::size_t next_culling = 0;  // the remaining clusters are culled again before this cluster
   bool cleared = false;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/log.h"
+#include "query/sampling/feature_parts.h"
 #include "store/tables/records.h"
 #include "store/tables/tables.h"
 
@@ -18,13 +19,21 @@ struct RecordFeatures::Shown {
 RecordFeatures::~RecordFeatures() = default;
 
 RecordFeatures::RecordFeatures(store::Store& store, boost::asio::thread_pool& workers,
-                               ModelId model_id, std::function<void()> ready)
-    : store_(store), workers_(workers), model_id_(model_id), ready_(std::move(ready)) {}
+                               ModelId model_id, std::shared_ptr<SurfaceLookup> surface,
+                               std::function<void()> ready)
+    : store_(store),
+      workers_(workers),
+      model_id_(model_id),
+      surface_(std::move(surface)),
+      ready_(std::move(ready)) {}
 
 Result<RecordFeatures::SurfaceFeatures> RecordFeatures::read(const Key& key,
                                                              std::optional<std::int64_t> at) const {
   auto features =
       STRATA_TRY(store_.records().features(key.first, least_role(key.second), model_id_, at));
+  if (const mesh::Geometry& geometry = surface_->geometry();
+      !geometry.part_ends.empty() && !features.empty())
+    query::find_parts(features, geometry, *surface_->tree());
   return features.empty() ? nullptr
                           : std::make_shared<const std::vector<KeyFeature>>(std::move(features));
 }
@@ -137,7 +146,7 @@ render::FeaturesShown show_features(const std::vector<LayerFeatures>& layers) {
       Rgba color = color_of(*layer.palette, static_cast<double>(each.key));
       color[3] =
           static_cast<std::uint8_t>(std::lround(color[3] * std::clamp(layer.opacity, 0.0f, 1.0f)));
-      if (color[3] > 0) shown->push_back({each.feature.places, color});
+      if (color[3] > 0) shown->push_back({each.feature.places, color, each.part});
     }
   }
   if (shown->empty()) return nullptr;

@@ -12,6 +12,7 @@
 #include "domain/people/visibility.h"
 #include "domain/tables/surface_feature.h"
 #include "render/renderer.h"
+#include "room/caches/surface_lookup.h"
 #include "store/store.h"
 
 namespace strata::room {
@@ -28,7 +29,7 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
 
   // Calls `ready`, on any thread, after it has read features that differ from the previous ones.
   RecordFeatures(store::Store& store, boost::asio::thread_pool& workers, ModelId model_id,
-                 std::function<void()> ready);
+                 std::shared_ptr<SurfaceLookup> surface, std::function<void()> ready);
   ~RecordFeatures();
 
   // Returns the newest features that were read, or null before the first reading.
@@ -61,6 +62,7 @@ class RecordFeatures : public std::enable_shared_from_this<RecordFeatures> {
   store::Store& store_;
   boost::asio::thread_pool& workers_;
   const ModelId model_id_;
+  const std::shared_ptr<SurfaceLookup> surface_;
   const std::function<void()> ready_;
   std::mutex mutex_;
   std::map<Key, Entry> entries_;

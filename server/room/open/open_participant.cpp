@@ -137,6 +137,7 @@ void OpenParticipant::camera(std::uint32_t view_id, std::uint64_t seq, const Cam
     if (view_id != 0) return;
     camera_ = camera;
     camera_->section.clear();
+    camera_->hidden_parts.reset();
   }
   room_->people().camera_moved(session_);
 }

@@ -118,8 +118,8 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::load(const RoomServices& services, M
   room->surface_image_cache_ = std::make_shared<SurfaceImageCache>(
       services.store, services.renderer, services.workers, services.memory, restyle);
   room->record_colors_ = std::make_shared<RecordColors>(services.store, services.workers, restyle);
-  room->record_features_ =
-      std::make_shared<RecordFeatures>(services.store, services.workers, room->id(), restyle);
+  room->record_features_ = std::make_shared<RecordFeatures>(
+      services.store, services.workers, room->id(), room->surface_lookup_, restyle);
   room->past_layers_ = std::make_shared<PastLayers>(
       services.store, services.renderer, services.workers, services.memory, room->record_features_,
       room->id(),

@@ -20,7 +20,7 @@ constexpr auto kSelectModels = sql(
     "m.origin, m.bounds_min, m.bounds_max, m.triangles, m.vertices, m.area, m.atlas, m.repairs, m.default_resolution, "
     "m.inventory_number, m.owner, m.creator, m.captured, m.method, m.accuracy, m.processing, m.rights_uri, m.credit, "
     "m.source_download, m.object_id, m.survey_date, m.sequence, m.version, coalesce(m.proposal, 'null'), "
-    "coalesce(m.open_edges, 'null'), coalesce(m.from_points, 'null'), "
+    "coalesce(m.open_edges, 'null'), coalesce(m.from_points, 'null'), coalesce(m.parts, 'null'), "
     "(SELECT coalesce(jsonb_agg(jsonb_build_object('name', s.name, 'sha256', encode(s.sha256, 'hex'), 'bytes', b.bytes) "
     "ORDER BY s.position), '[]') FROM model_sources s JOIN blobs b USING (sha256) WHERE s.model_id = m.id) "
     "FROM models m ");
@@ -65,6 +65,7 @@ Model read_model(const PgResult& rows, int i) {
   m.proposal = scale_proposal_from_json(row.json());
   m.open_edges = open_edges_from_json(row.json());
   m.from_points = surface_from_points_from_json(row.json());
+  m.parts = model_parts_from_json(row.json());
   for (const auto& file : row.json())
     m.source_files.push_back({file.at("name"), file.at("sha256"), file.at("bytes")});
   return m;
@@ -76,6 +77,10 @@ Result<void> check(const Model& m) {
     return fail(ErrorCode::malformed, "Invalid direction",
                 "`up` must be one of x, y, z, -x, -y and -z.", "up");
   for (const auto& repair : m.repairs) STRATA_TRY(check_text(repair.what, "repairs"));
+  for (const ModelPart& part : m.parts) {
+    STRATA_TRY(check_text(part.name, "parts"));
+    STRATA_TRY(check_text(part.folder, "parts"));
+  }
   return check_texts({{&m.slug, "slug"},
                       {&m.north, "north"},
                       {&m.crs, "crs"},
@@ -144,14 +149,15 @@ Result<PgResult> insert_model(PgConnection& connection, const Model& m, const st
       .bytes(geometry)
       .json(m.proposal ? to_json(*m.proposal) : nlohmann::json())
       .json(m.open_edges ? to_json(*m.open_edges, 1.0) : nlohmann::json())
-      .json(m.from_points ? to_json(*m.from_points, 1.0) : nlohmann::json());
+      .json(m.from_points ? to_json(*m.from_points, 1.0) : nlohmann::json())
+      .json(m.parts.empty() ? nlohmann::json() : to_json(m.parts, 1.0));
   return connection.query(
       "INSERT INTO models (name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, "
       "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, "
       "object_id, survey_date, origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry, proposal, "
-      "open_edges, from_points) "
+      "open_edges, from_points, parts) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22, $23, $24, "
-      "$25, $26, $27, $28, $29, $30, $31, nullif($32, 'null'), nullif($33, 'null'), nullif($34, 'null')) ON CONFLICT DO NOTHING RETURNING id",
+      "$25, $26, $27, $28, $29, $30, $31, nullif($32, 'null'), nullif($33, 'null'), nullif($34, 'null'), nullif($35, 'null')) ON CONFLICT DO NOTHING RETURNING id",
       params);
 }
 

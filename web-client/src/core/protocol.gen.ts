@@ -15,6 +15,9 @@ export type Plane = [number, number, number, number];
 /** Planes that cut the model open. A box consists of six planes. Parts that are cut away are not visible, and cannot be picked or painted. Where a cut would show the inside of the solid, the cut is drawn as a closed face. */
 export type Section = Plane[];
 
+/** Numbers of parts of a model. A model that was imported from several scans has parts (`parts` of the model). The number of a part is its position in that list, beginning with 0. Numbers that no part has are ignored. */
+export type PartSet = number[];
+
 /** Pointer path. Pixels in the window of the camera. Consecutive points are joined. A path with only one point is a dab. */
 export type Path = Point2[];
 
@@ -193,6 +196,8 @@ export interface Camera {
   width: number;
   height: number;
   section?: Section;
+  /** Parts of the model that are neither visible nor painted. */
+  hidden_parts?: PartSet;
 }
 
 /** Brush shape. `disc`, `square`, or the id or slug of a brush shape of the site. The brush moves continuously along a path. */
@@ -632,8 +637,8 @@ export interface Tour {
 /** Unit of length. */
 export type Unit = "mm" | "cm" | "m";
 
-/** Reason for a proposed unit or up direction. `given`: the import request sets it. `format`: glTF files use meters and +Y as the up direction. `comment`: a comment in the file states it. `coordinates`: the coordinates are map coordinates. `size`: the object has the usual size of scanned objects. `shape`: the object can stand stably in this position. */
-export type ScaleReason = "given" | "format" | "comment" | "coordinates" | "size" | "shape";
+/** Reason for a proposed unit or up direction. `given`: the import request sets it. `format`: glTF files use meters and +Y as the up direction. `comment`: a comment in the file states it. `coordinates`: the coordinates are map coordinates. `size`: the object has the usual size of scanned objects. `shape`: the object can stand stably in this position. `parts`: several scans of one site usually have +Z as the up direction. */
+export type ScaleReason = "given" | "format" | "comment" | "coordinates" | "size" | "shape" | "parts";
 
 /** Up direction. An axis of the model, or its opposite direction. */
 export type Axis = "x" | "y" | "z" | "-x" | "-y" | "-z";
@@ -723,6 +728,16 @@ export interface SurfaceFromPoints {
   distance_95_m: number;
 }
 
+/** Part of a model. The surface of one of the scans from which the model was imported. Parts share no point of the surface. */
+export interface ModelPart {
+  name: string;
+  /** The folders of the part, outermost first and separated by `/`. They form a tree. Empty: the part is in no folder. */
+  folder: string;
+  triangles: number;
+  area_m2: number;
+  bounds: Bounds;
+}
+
 /** Uploaded file, which is stored unchanged. */
 export interface SourceFile {
   name: string;
@@ -760,6 +775,8 @@ export interface Model {
   repairs: Repair[];
   open_edges?: OpenEdges;
   from_points?: SurfaceFromPoints;
+  /** Only of models that were imported from several scans with `parts=true`. */
+  parts?: ModelPart[];
   source_files: SourceFile[];
   /** Default resolution of new layers. */
   default_resolution: Resolution;
@@ -818,6 +835,8 @@ export interface CameraUpdate {
   width: number;
   height: number;
   section?: Section;
+  /** Parts of the model that are neither visible nor painted. */
+  hidden_parts?: PartSet;
   /** true: the camera is moving, and more cameras will follow. The server then prefers speed to quality. Default: false. */
   moving?: boolean;
 }

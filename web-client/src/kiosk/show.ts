@@ -131,7 +131,7 @@ export class KioskShow {
     this.showSettings(view, layers);
     this._placed = this.model !== null;
     if (!this.model) return;
-    this.view.setSection(view.camera.section ?? [], flightS > 0);
+    this.view.setSection(view.camera.section ?? [], view.camera.hidden_parts ?? [], flightS > 0);
     const flightMs = this.drawn ? flightS * 1000 : 0;
     this._flightEndsMs = performance.now() + flightMs;
     this.view.fly(placeOfObject(view.camera, this.view.camera), flightMs);

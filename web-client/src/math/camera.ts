@@ -20,6 +20,7 @@ export interface CameraMessage {
   width: number;
   height: number;
   section?: Plane[];
+  hidden_parts?: number[];
 }
 
 /**
@@ -87,6 +88,8 @@ export class OrbitCamera {
   height = 1;
   /** The planes of the section. The camera does not show the parts that they cut away. */
   section: Plane[] = [];
+  /** The numbers of the parts of the model that the camera does not show. */
+  hiddenParts: readonly number[] = [];
 
   private _bounds: Bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
   private _up: UpAxis = "z";
@@ -349,6 +352,7 @@ export class OrbitCamera {
       width: this.width,
       height: this.height,
       ...(this.section.length > 0 ? { section: this.section } : {}),
+      ...(this.hiddenParts.length > 0 ? { hidden_parts: [...this.hiddenParts] } : {}),
     };
   }
 

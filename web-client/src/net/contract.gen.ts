@@ -3435,6 +3435,8 @@ export interface components {
         ModelExportRequest: wire.ModelExportRequest;
         /** Models */
         ModelList: wire.ModelList;
+        /** Part of a model */
+        ModelPart: wire.ModelPart;
         /** Changes to a model's metadata */
         ModelPatch: wire.ModelPatch;
         /** Log level of a module */
@@ -3461,6 +3463,8 @@ export interface components {
         Palette: wire.Palette;
         /** Control point of a palette */
         PalettePoint: wire.PalettePoint;
+        /** Numbers of parts of a model */
+        PartSet: wire.PartSet;
         /** New password */
         PasswordChange: wire.PasswordChange;
         /** Pointer path */
@@ -5256,6 +5260,7 @@ export interface operations {
                 gap?: number;
                 name?: string;
                 object?: string;
+                parts?: boolean;
                 project?: string;
                 resolution?: components["schemas"]["Resolution"];
                 strict?: boolean;

@@ -66,15 +66,20 @@ export interface CommentsPart {
 
 export interface AppearancePart {
   readonly section: SectionChoice;
+  readonly hiddenParts: ReadonlySet<number>;
   /**
-   * Returns the settings that a saved view stores, without the section, which belongs to the
-   * camera.
+   * Returns the settings that a saved view stores, without the section and the hidden parts, which
+   * belong to the camera.
    */
   toKeep(): { looks: LookShown[]; light: Light };
   /**
    * Applies the settings of a saved view. Returns a function that restores the previous settings.
    */
-  showView(view: { camera: { section?: Plane[] }; looks?: LookShown[]; light: Light }): () => void;
+  showView(view: {
+    camera: { section?: Plane[]; hidden_parts?: number[] };
+    looks?: LookShown[];
+    light: Light;
+  }): () => void;
 }
 
 export interface PaintingPart {

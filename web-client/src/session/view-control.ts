@@ -244,12 +244,13 @@ export class ViewControl {
   }
 
   /**
-   * Sets the planes of the section. The frame, the brush and the pointer ignore the parts that they
-   * cut away.
+   * Sets the planes of the section and the hidden parts of the model. The frame, the brush and the
+   * pointer ignore what they remove.
    */
-  setSection(planes: Plane[], moving: boolean): void {
+  setSection(planes: Plane[], hiddenParts: readonly number[], moving: boolean): void {
     this._host.whenFree(() => {
       this.camera.section = planes;
+      this.camera.hiddenParts = hiddenParts;
       this.moved(moving);
     });
   }

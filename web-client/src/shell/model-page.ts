@@ -344,7 +344,7 @@ export class StrataModelPage extends LitElement {
           <strata-together-bar .session=${session}></strata-together-bar>
           <strata-comment-pins .session=${session}></strata-comment-pins>
           ${session.comments.card === null || !hasPart("comments", this) ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
-          <strata-picture-bar .session=${session}></strata-picture-bar>
+          <strata-picture-bar .session=${session} .hasParts=${Boolean(session.model?.parts) && hasPart("parts", this)}></strata-picture-bar>
           ${lostBanner(session)}
           <div class="readings">
             ${

@@ -219,7 +219,8 @@ export class OpenModelSession implements ModelSession {
         this._connection.setAppearance(looks, light);
         this.surveys.other?.showLight();
       },
-      sendSection: (planes, moving) => this.view.setSection(planes, moving),
+      sendSection: (planes, hiddenParts, moving) =>
+        this.view.setSection(planes, hiddenParts, moving),
       bounds: () => this.model?.bounds ?? null,
       changed: changes("appearance"),
     });

@@ -15,6 +15,8 @@ export type PagePart =
   | "comments"
   | "past"
   | "surveys"
+  | "parts"
+  | "scans"
   | "join"
   | "sign_in"
   | "account"

@@ -17,13 +17,14 @@ import { droppedFiles, hasFiles, withoutFolders, type DroppedFile } from "../ui/
 import {
   chooseScans,
   Imports,
+  tellLeftOut,
   type ImportEntry,
   type ImportResult,
   type Scan,
 } from "../features/home/imports";
 import { notices } from "../ui/notices";
 import "./notices-view";
-import { hasPart, loadPartLater, setPartLoads } from "./page-parts";
+import { hasPart, loadPartLater, setPartLoads, withPart } from "./page-parts";
 import { curates, kDefaultProject } from "../features/home/project-list";
 import {
   mayLeavePage,
@@ -77,6 +78,8 @@ setPartLoads({
       import("../features/surveys/survey-overlay"),
     ]),
   ),
+  parts: later(() => import("../features/parts/part-tree")),
+  scans: later(() => import("../features/home/scans-dialog")),
   join: () => import("../features/account/join-page"),
   sign_in: () => import("../features/account/sign-in"),
   account: later(() => import("../features/account/account-dialog")),
@@ -366,7 +369,14 @@ export class StrataApp extends LitElement {
   }
 
   private async importFiles(dropped: readonly DroppedFile[]): Promise<void> {
-    const scans = chooseScans(dropped);
+    let scans: readonly Scan[] = chooseScans(dropped);
+    if (scans.length > 1)
+      scans = await new Promise((resolve) =>
+        withPart<typeof import("../features/home/scans-dialog")>("scans", ({ askAboutScans }) =>
+          resolve(askAboutScans(scans, dropped)),
+        ),
+      );
+    if (scans.length > 0) tellLeftOut(dropped, scans);
     if (this._route.page !== "home" && scans.length > 0) {
       notices.show("info", texts.import.started, "", { href: "/", label: texts.import.watch });
     }

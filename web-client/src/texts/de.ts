@@ -348,6 +348,7 @@ export const texts = {
     sign_in_first: "Melden Sie sich zuerst an, und legen Sie den Scan dann noch einmal ab.",
     cancel: (name) => `Import von ${name} abbrechen`,
     repeat: "Erneut versuchen",
+    as_parts: "Als ein Modell importieren",
     repeat_named: (name) => `${name} erneut importieren`,
     dismiss: (name) => `Hinweis zu ${name} schließen`,
     open: "Öffnen",
@@ -1370,6 +1371,7 @@ export const texts = {
     light_pad_hint:
       "Ziehen Sie, oder drücken Sie die Pfeiltasten. Nahe am Rand streift das Licht die Oberfläche.",
     light_from: (from, above) => `Von ${Math.round(from / 30) % 12 || 12} Uhr, ${above}° hoch`,
+    model_parts: "Teile",
     section: "Schnitt",
     sections: { off: "Aus", x: "X", y: "Y", z: "Z", box: "Quader" },
     section_hints: {

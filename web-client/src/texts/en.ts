@@ -320,6 +320,7 @@ export const texts = {
     sign_in_first: "Sign in first, then drop the scan again.",
     cancel: (name: string) => `Cancel the import of ${name}`,
     repeat: "Try again",
+    as_parts: "Import as one model",
     repeat_named: (name: string) => `Import ${name} again`,
     dismiss: (name: string) => `Dismiss the note about ${name}`,
     open: "Open",
@@ -1331,6 +1332,7 @@ export const texts = {
     light_pad_hint: "Drag, or use the arrow keys. Near the rim, the light becomes raking light.",
     light_from: (from: number, above: number) =>
       `From ${Math.round(from / 30) % 12 || 12} o'clock, ${above}° high`,
+    model_parts: "Parts",
     section: "Section",
     sections: { off: "Off", x: "X", y: "Y", z: "Z", box: "Box" },
     section_hints: {

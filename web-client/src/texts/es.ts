@@ -341,6 +341,7 @@ export const texts = {
     sign_in_first: "Inicie sesión primero y suelte el escaneo otra vez.",
     cancel: (name) => `Cancelar la importación de ${name}`,
     repeat: "Reintentar",
+    as_parts: "Importar como un modelo",
     repeat_named: (name) => `Importar ${name} de nuevo`,
     dismiss: (name) => `Descartar el aviso sobre ${name}`,
     open: "Abrir",
@@ -1362,6 +1363,7 @@ export const texts = {
       const hour = Math.round(from / 30) % 12 || 12;
       return `Desde ${hour === 1 ? "la" : "las"} ${hour} del reloj, a ${above}° de altura`;
     },
+    model_parts: "Partes",
     section: "Sección",
     sections: { off: "No", x: "X", y: "Y", z: "Z", box: "Caja" },
     section_hints: {

@@ -842,6 +842,7 @@ export const laterTexts = {
     comment: (comment) => `Aus einem Kommentar in der Datei: „${comment}“.`,
     comment_up: (comment) => `Aus einem Kommentar in der Datei: „${comment}“.`,
     coordinates: "Dies sind Kartenkoordinaten: Meter, mit +Z oben.",
+    parts: "Mehrere Scans eines Fundplatzes haben meist +Z oben.",
     size: (unit) => `Die Datei nennt keine Einheit. Aus der Größe geschätzt: vermutlich ${unit}.`,
     size_unsure:
       "Die Datei nennt keine Einheit, und die Größe passt zu mehreren. Wählen Sie eine Einheit.",
@@ -1392,6 +1393,29 @@ export const laterTexts = {
     model_missing: "Wählen Sie das andere Modell.",
     property_missing: "Wählen Sie die Eigenschaft.",
     started: (name) => `„${name}“ wird berechnet.`,
+  },
+
+  parts: {
+    shown: (shown: number, all: number) =>
+      shown === all
+        ? `Alle ${all} Teile sind sichtbar`
+        : `${shown} von ${all} Teilen sind sichtbar`,
+    show_all: "Alle zeigen",
+    only: (name: string) => `Nur ${name} zeigen`,
+    fly: (name: string) => `Kamera zu ${name} bewegen`,
+  },
+
+  scans: {
+    heading: (n: number) => `${n} Scans importieren`,
+    as_models: (n: number) => `Als ${n} Modelle`,
+    as_models_hint:
+      "Für verschiedene Objekte, oder für Aufnahmen eines Objekts von verschiedenen Tagen.",
+    as_parts: (n: number) => `Als ein Modell mit ${n} Teilen`,
+    as_parts_hint:
+      "Für Scans eines Gebäudes oder Fundplatzes mit gemeinsamen Koordinaten. Ebenen bedecken alle Teile, und Teile lassen sich ausblenden. Aus Ordnern wird ein Baum.",
+    name: "Name des Modells",
+    more: (n: number) => `… und ${n} weitere`,
+    start: "Importieren",
   },
 
   points: {

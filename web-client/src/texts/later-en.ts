@@ -830,6 +830,7 @@ export const laterTexts = {
     comment: (comment: string) => `From a comment in the file: “${comment}”.`,
     comment_up: (comment: string) => `From a comment in the file: “${comment}”.`,
     coordinates: "These are map coordinates: meters, with +Z up.",
+    parts: "Several scans of one site usually have +Z up.",
     size: (unit: string) =>
       `The file does not specify a unit. Guessed from the size: probably ${unit}.`,
     size_unsure:
@@ -1374,6 +1375,26 @@ export const laterTexts = {
     model_missing: "Choose the other model.",
     property_missing: "Choose the property.",
     started: (name: string) => `“${name}” is being computed.`,
+  },
+
+  parts: {
+    shown: (shown: number, all: number) =>
+      shown === all ? `All ${all} parts are shown` : `${shown} of ${all} parts are shown`,
+    show_all: "Show all",
+    only: (name: string) => `Show only ${name}`,
+    fly: (name: string) => `Move the camera to ${name}`,
+  },
+
+  scans: {
+    heading: (n: number) => `Import ${n} scans`,
+    as_models: (n: number) => `As ${n} models`,
+    as_models_hint: "For different objects, or for surveys of one object on different dates.",
+    as_parts: (n: number) => `As one model with ${n} parts`,
+    as_parts_hint:
+      "For scans of one building or site with common coordinates. Layers cover all parts, and parts can be hidden. Folders become a tree.",
+    name: "Name of the model",
+    more: (n: number) => `… and ${n} more`,
+    start: "Import",
   },
 
   points: {

@@ -839,6 +839,7 @@ export const laterTexts = {
     comment: (comment) => `Según un comentario del archivo: «${comment}».`,
     comment_up: (comment) => `Según un comentario del archivo: «${comment}».`,
     coordinates: "Son coordenadas de un mapa: en metros, con +Z hacia arriba.",
+    parts: "Varios escaneos de un yacimiento suelen tener +Z hacia arriba.",
     size: (unit) =>
       `El archivo no indica la unidad. Estimación según el tamaño: probablemente ${unit}.`,
     size_unsure: "El archivo no indica la unidad, y el tamaño encaja con más de una. Elija una.",
@@ -1384,6 +1385,27 @@ export const laterTexts = {
     model_missing: "Elija el otro modelo.",
     property_missing: "Elija la propiedad.",
     started: (name) => `Se está calculando «${name}».`,
+  },
+
+  parts: {
+    shown: (shown: number, all: number) =>
+      shown === all ? `Se ven las ${all} partes` : `Se ven ${shown} de ${all} partes`,
+    show_all: "Mostrar todas",
+    only: (name: string) => `Mostrar solo ${name}`,
+    fly: (name: string) => `Mover la cámara a ${name}`,
+  },
+
+  scans: {
+    heading: (n: number) => `Importar ${n} escaneos`,
+    as_models: (n: number) => `Como ${n} modelos`,
+    as_models_hint:
+      "Para objetos distintos, o para levantamientos de un objeto en fechas distintas.",
+    as_parts: (n: number) => `Como un modelo con ${n} partes`,
+    as_parts_hint:
+      "Para escaneos de un edificio o yacimiento con coordenadas comunes. Las capas cubren todas las partes, y las partes se pueden ocultar. Las carpetas forman un árbol.",
+    name: "Nombre del modelo",
+    more: (n: number) => `… y ${n} más`,
+    start: "Importar",
   },
 
   points: {

@@ -72,6 +72,7 @@ const shapes = {
   bulb: svg`<path d="M9.500 17.500h5M10.200 20.500h3.600" /><path d="M9.500 17.500c0-2-3-3.600-3-7.300a5.500 5.500 0 0 1 11 0c0 3.700-3 5.300-3 7.300Z" />`,
   isolate: svg`<rect x="8" y="8" width="8" height="8" rx="1.5" fill="currentColor" /><path d="M4 7.500V4h3.500M16.500 4H20v3.500M20 16.500V20h-3.500M7.500 20H4v-3.500" />`,
   palette: svg`<path d="M12 3.500a8.500 8.500 0 1 0 0 17c1.300 0 1.900-.9 1.600-2-.4-1.300.3-2.500 1.800-2.500h2.100a3 3 0 0 0 3-3c0-5.300-3.800-9.500-8.500-9.500Z" /><path d="M7.500 12h.01M9.500 8h.01M14 7.500h.01M17 10.500h.01" stroke-width="2.6" />`,
+  parts: svg`<path d="M4 20v-7h7v7ZM13 20v-7h7v7ZM8.500 11V4h7v7Z" />`,
   layers: svg`<path d="m12 4 8.500 4.500L12 13 3.500 8.500Z" /><path d="m4 12.500 8 4.200 8-4.200M4 16.500l8 4.200 8-4.200" />`,
   panel: svg`<rect x="3.5" y="4.5" width="17" height="15" rx="2" /><path d="M14.5 4.500v15" />`,
 } satisfies Record<string, SVGTemplateResult>;

@@ -229,6 +229,7 @@ std::string_view name(ScaleReason value) {
     case ScaleReason::coordinates: return "coordinates";
     case ScaleReason::size: return "size";
     case ScaleReason::shape: return "shape";
+    case ScaleReason::parts: return "parts";
   }
   return {};
 }
@@ -241,6 +242,7 @@ void read(const nlohmann::json& json, ScaleReason& value) {
   if (text == "coordinates") value = ScaleReason::coordinates;
   if (text == "size") value = ScaleReason::size;
   if (text == "shape") value = ScaleReason::shape;
+  if (text == "parts") value = ScaleReason::parts;
 }
 
 nlohmann::json to_json(const ScaleReason& value) { return name(value); }
@@ -2103,6 +2105,24 @@ nlohmann::json to_json(const SurfaceFromPoints& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, ModelPart& value) {
+  read_member(json, "name", value.name);
+  read_member(json, "folder", value.folder);
+  read_member(json, "triangles", value.triangles);
+  read_member(json, "area_m2", value.area_m2);
+  read_member(json, "bounds", value.bounds);
+}
+
+nlohmann::json to_json(const ModelPart& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_member(json, "folder", value.folder);
+  write_member(json, "triangles", value.triangles);
+  write_member(json, "area_m2", value.area_m2);
+  write_member(json, "bounds", value.bounds);
+  return json;
+}
+
 void read(const nlohmann::json& json, SourceFile& value) {
   read_member(json, "name", value.name);
   read_member(json, "sha256", value.sha256);
@@ -2152,6 +2172,7 @@ void read(const nlohmann::json& json, CameraUpdate& value) {
   read_member(json, "width", value.width);
   read_member(json, "height", value.height);
   read_optional_member(json, "section", value.section);
+  read_optional_member(json, "hidden_parts", value.hidden_parts);
   read_optional_member(json, "moving", value.moving);
 }
 
@@ -2165,12 +2186,13 @@ nlohmann::json to_json(const CameraUpdate& value) {
   write_member(json, "width", value.width);
   write_member(json, "height", value.height);
   write_optional_member(json, "section", value.section);
+  write_optional_member(json, "hidden_parts", value.hidden_parts);
   write_member(json, "moving", value.moving);
   return json;
 }
 
 strata::Camera camera_of(const CameraUpdate& value) {
-  return {value.view, value.projection, value.width, value.height, value.section.value_or(std::vector<glm::dvec4>{})};
+  return {value.view, value.projection, value.width, value.height, value.section.value_or(std::vector<glm::dvec4>{}), value.hidden_parts.value_or(strata::PartSet{})};
 }
 
 Result<void> check(const CameraUpdate& value, const std::string& field) {

@@ -30,6 +30,7 @@ enum class Schema {
   Matrix,
   Plane,
   Section,
+  PartSet,
   Path,
   PixelPath,
   ProblemType,
@@ -116,6 +117,7 @@ enum class Schema {
   Repair,
   OpenEdges,
   SurfaceFromPoints,
+  ModelPart,
   SourceFile,
   Model,
   SurveyDate,
@@ -473,13 +475,15 @@ enum class Schema {
   UnrolledLine,
   Unrolled,
 };
-constexpr int kSchemaCount = 447;
+constexpr int kSchemaCount = 449;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
 
 template <class T>
 extern const Schema kSchemaOf;
+
+using PartSet = strata::PartSet;
 
 // Pointer path. Pixels in the window of the camera. Consecutive points are joined. A path with only one point is a dab.
 using Path = std::vector<glm::dvec2>;
@@ -861,8 +865,8 @@ inline constexpr Schema kSchemaOf<TourClasses> = Schema::TourClasses;
 
 using Unit = strata::Unit;
 
-// Reason for a proposed unit or up direction. `given`: the import request sets it. `format`: glTF files use meters and +Y as the up direction. `comment`: a comment in the file states it. `coordinates`: the coordinates are map coordinates. `size`: the object has the usual size of scanned objects. `shape`: the object can stand stably in this position.
-enum class ScaleReason { given, format, comment, coordinates, size, shape };
+// Reason for a proposed unit or up direction. `given`: the import request sets it. `format`: glTF files use meters and +Y as the up direction. `comment`: a comment in the file states it. `coordinates`: the coordinates are map coordinates. `size`: the object has the usual size of scanned objects. `shape`: the object can stand stably in this position. `parts`: several scans of one site usually have +Z as the up direction.
+enum class ScaleReason { given, format, comment, coordinates, size, shape, parts };
 std::string_view name(ScaleReason value);
 void read(const nlohmann::json& json, ScaleReason& value);
 nlohmann::json to_json(const ScaleReason& value);
@@ -999,6 +1003,22 @@ nlohmann::json to_json(const SurfaceFromPoints& value);
 template <>
 inline constexpr Schema kSchemaOf<SurfaceFromPoints> = Schema::SurfaceFromPoints;
 
+// Part of a model. The surface of one of the scans from which the model was imported. Parts share no point of the surface.
+struct ModelPart {
+  std::string name;
+  // The folders of the part, outermost first and separated by `/`. They form a tree. Empty: the
+  // part is in no folder.
+  std::string folder;
+  std::int64_t triangles = 0;
+  double area_m2 = 0;
+  Bounds bounds;
+  bool operator==(const ModelPart&) const = default;
+};
+void read(const nlohmann::json& json, ModelPart& value);
+nlohmann::json to_json(const ModelPart& value);
+template <>
+inline constexpr Schema kSchemaOf<ModelPart> = Schema::ModelPart;
+
 // Uploaded file, which is stored unchanged.
 struct SourceFile {
   std::string name;
@@ -1056,6 +1076,8 @@ struct CameraUpdate {
   int width = 0;
   int height = 0;
   std::optional<std::vector<glm::dvec4>> section;
+  // Parts of the model that are neither visible nor painted.
+  std::optional<strata::PartSet> hidden_parts;
   // true: the camera is moving, and more cameras will follow. The server then prefers speed to
   // quality.
   bool moving = false;

@@ -53,7 +53,7 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
   }
   const std::set<std::int64_t> requested_keys(keys->begin(), keys->end());
   std::set<std::int64_t> marked;
-  for (const auto& [key, feature] : *features) {
+  for (const auto& [key, feature, part] : *features) {
     if (!requested_keys.contains(key)) continue;
     marked.insert(key);
     for (const glm::dvec3& place : feature.places) add_bounds(place, place);

@@ -80,7 +80,10 @@ Result<void> read_direction(const protocol::FigureRequest& body,
   if (body.direction && body.normal)
     return fail(ErrorCode::invalid, "Direction and normal together",
                 "Send either a direction or a normal, but not both.", "normal");
-  if (camera) figure.section = camera->section;
+  if (camera) {
+    figure.section = camera->section;
+    figure.hidden_parts = camera->hidden_parts;
+  }
   if (body.normal) {
     if (!(glm::length(*body.normal) > 1e-12))
       return fail(ErrorCode::invalid, "Invalid normal",

@@ -38,6 +38,14 @@ Result<double> length_of(const Request& request, const std::string& name) {
   return length;
 }
 
+Result<bool> flag_of(const Request& request, const std::string& name) {
+  const std::string text = request.query_or(name, "false");
+  if (text != "true" && text != "false")
+    return fail(ErrorCode::invalid, "Not true or false", "`" + name + "` must be true or false.",
+                name);
+  return text == "true";
+}
+
 // Reads all parameters of the import from the query. The files are in the body.
 Result<jobs::ImportRequest> import_request(const RouteContext& context, const Request& request) {
   jobs::ImportRequest requested;
@@ -74,11 +82,8 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   requested.weld_distance = STRATA_TRY(length_of(request, "weld"));
   requested.cell = STRATA_TRY(length_of(request, "cell"));
   requested.gap = STRATA_TRY(length_of(request, "gap"));
-  const std::string strict = request.query_or("strict", "false");
-  if (strict != "true" && strict != "false")
-    return fail(ErrorCode::invalid, "Not true or false", "`strict` must be true or false.",
-                "strict");
-  requested.strict = strict == "true";
+  requested.strict = STRATA_TRY(flag_of(request, "strict"));
+  requested.parts = STRATA_TRY(flag_of(request, "parts"));
   requested.files.push_back({base_filename(request.query_or("filename", {})), {}});
   return requested;
 }
@@ -166,9 +171,11 @@ Result<Response> start_import(const RouteContext& context, JobIdempotency& book,
   }
   // The file name in the query has precedence over the file name in a form.
   if (requested->files.size() == 1 && !named.empty()) requested->files[0].filename = named;
-  if (again)
+  if (again) {
     for (const SourceFile& source : again->source_files)
       requested->files.push_back({source.name, {}});
+    requested->parts = requested->parts || !again->parts.empty();
+  }
   STRATA_TRY(jobs::check(*requested));
 
   const store::IdempotentResponse<Model> answer{
@@ -223,7 +230,7 @@ void add_import_routes(Router& router, const RouteContext& context) {
        }),
        .role = Role::curator,
        .query = {"name", "project", "unit", "up", "crs", "object", "survey_date", "resolution",
-                 "filename", "weld", "cell", "gap", "files_of", "strict"},
+                 "filename", "weld", "cell", "gap", "files_of", "parts", "strict"},
        .project_in_query = true,
        .check = [&context](const Request& request) { return check_import(context, request); },
        .body = BodyKind::file,

@@ -1,5 +1,5 @@
-// A user's view of the model: its surface images, light and section. Only saved views store these
-// settings. Each user has separate settings.
+// A user's view of the model: its surface images, light, section and hidden parts. Only saved views
+// store these settings. Each user has separate settings.
 
 import { nameOfFile } from "../../domain/file-names";
 import { type Api, kAsItIs } from "../../net/api";
@@ -41,7 +41,7 @@ const kFirstLight: Required<Light> = {
 export interface AppearanceHost {
   /** Null means the default surface images. */
   send(looks: LookShown[] | null, light: Light): void;
-  sendSection(planes: Plane[], moving: boolean): void;
+  sendSection(planes: Plane[], hiddenParts: readonly number[], moving: boolean): void;
   bounds(): Bounds | null;
   changed(): void;
 }
@@ -54,6 +54,7 @@ export class Appearance {
   looks: Look[] = []; // in ascending order; the last one is on top
   light = kFirstLight;
   section: SectionChoice = noSection();
+  hiddenParts: ReadonlySet<number> = new Set(); // numbers of parts of the model
 
   private _overrides = new Map<number, LookSettings>();
   // surface images of a saved view, bottom to top; other images are above them, in the order of
@@ -184,6 +185,11 @@ export class Appearance {
     this.sendSection(moving);
   }
 
+  setHiddenParts(hidden: ReadonlySet<number>): void {
+    this.hiddenParts = hidden;
+    this.sendSection();
+  }
+
   nextLight(): void {
     this.setLight({ mode: after(kLightModes, this.light.mode) });
   }
@@ -194,7 +200,12 @@ export class Appearance {
   /** Call this when the model's bounds become known or change. */
   sendSection(moving = false): void {
     const bounds = this._host.bounds();
-    if (bounds) this._host.sendSection(sectionPlanes(this.section, bounds), moving);
+    if (bounds)
+      this._host.sendSection(
+        sectionPlanes(this.section, bounds),
+        [...this.hiddenParts].sort((a, b) => a - b),
+        moving,
+      );
     this._host.changed();
   }
 
@@ -208,13 +219,17 @@ export class Appearance {
   get isDefault(): boolean {
     const { mode, exposure } = this.light;
     return (
-      mode === "museum" && exposure === 0 && this.section.mode === "off" && !this.hasLookOverrides
+      mode === "museum" &&
+      exposure === 0 &&
+      this.section.mode === "off" &&
+      this.hiddenParts.size === 0 &&
+      !this.hasLookOverrides
     );
   }
 
   // ── saved views ────────────────────────────────────────────────────────────────────────────────
 
-  /** Returns the settings that a saved view stores. The section is part of the camera. */
+  /** Returns the settings that a saved view stores. Section and hidden parts are in the camera. */
   toKeep(): { looks: LookShown[]; light: Light } {
     return { looks: this.shownLooks(), light: lightShown(this.light) };
   }
@@ -222,8 +237,12 @@ export class Appearance {
   /**
    * Applies the settings of a saved view. Returns a function that restores the previous settings.
    */
-  showView(view: { camera: { section?: Plane[] }; looks?: LookShown[]; light: Light }): () => void {
-    const { _overrides, _stack, light, section } = this;
+  showView(view: {
+    camera: { section?: Plane[]; hidden_parts?: number[] };
+    looks?: LookShown[];
+    light: Light;
+  }): () => void {
+    const { _overrides, _stack, light, section, hiddenParts } = this;
     const { settings, stack } = looksOfView(view, this.looks);
     const bounds = this._host.bounds();
     const ofView = bounds ? sectionChoice(view.camera.section ?? [], bounds) : section;
@@ -232,14 +251,16 @@ export class Appearance {
       _stack: stack,
       light: lightOf(view.light),
       section: ofView,
+      hiddenParts: new Set(view.camera.hidden_parts ?? []),
     });
-    return () => this.take({ _overrides, _stack, light, section });
+    return () => this.take({ _overrides, _stack, light, section, hiddenParts });
   }
   private take(all: {
     _overrides: Map<number, LookSettings>;
     _stack: number[];
     light: Required<Light>;
     section: SectionChoice;
+    hiddenParts: ReadonlySet<number>;
   }): void {
     Object.assign(this, all);
     this.send();
@@ -250,6 +271,7 @@ export class Appearance {
     this.forgetOwnLooks();
     this.light = kFirstLight;
     this.section = noSection();
+    this.hiddenParts = new Set();
     this.send();
     this.sendSection();
   }

@@ -1,5 +1,5 @@
-// <strata-picture-bar>: the bar over the 3D view, with the view cube, fit to view, light and
-// section. The controls of light and section open next to the bar. They stay open while the user
+// <strata-picture-bar>: the bar over the 3D view, with the view cube, fit to view, light, section
+// and parts. The controls of the last three open next to the bar. They stay open while the user
 // works on the model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
@@ -26,23 +26,39 @@ const kParts = {
     key: "light.next",
     content: (session: ModelSession) =>
       html`<strata-light-controls .session=${session}></strata-light-controls>`,
+    isOn: ({ appearance }: ModelSession) => appearance.light.mode !== "museum",
   },
   section: {
     glyph: "section",
     key: "section.next",
     content: (session: ModelSession) =>
       html`<strata-section-controls .session=${session}></strata-section-controls>`,
+    isOn: ({ appearance }: ModelSession) => appearance.section.mode !== "off",
+  },
+  // Only for models that were imported from several scans.
+  model_parts: {
+    glyph: "parts",
+    key: null,
+    content: (session: ModelSession) =>
+      html`<strata-part-tree .session=${session}></strata-part-tree>`,
+    isOn: ({ appearance }: ModelSession) => appearance.hiddenParts.size > 0,
   },
 } satisfies Record<
   string,
-  { glyph: IconName; key: KeyedCommand; content(session: ModelSession): TemplateResult }
+  {
+    glyph: IconName;
+    key: KeyedCommand | null;
+    content(session: ModelSession): TemplateResult;
+    isOn(session: ModelSession): boolean;
+  }
 >;
 type Part = keyof typeof kParts;
-const kPartNames = Object.keys(kParts) as Part[];
 
 @customElement("strata-picture-bar")
 export class StrataPictureBar extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
+  /** Whether the model has parts, and <strata-part-tree> is loaded. */
+  @property({ attribute: false }) hasParts = false;
   private readonly _open = new Kept<Part[]>(() => localStorage, "strata.picture_bar", []);
 
   constructor() {
@@ -134,7 +150,10 @@ export class StrataPictureBar extends LitElement {
 
   override render(): TemplateResult {
     const { session } = this;
-    const open = kPartNames.filter((part) => this._open.value.includes(part));
+    const names = (Object.keys(kParts) as Part[]).filter(
+      (part) => part !== "model_parts" || this.hasParts,
+    );
+    const open = names.filter((part) => this._open.value.includes(part));
     return html`<div class="column">
         <strata-view-cube .session=${session}></strata-view-cube>
         <div class="bar" role="toolbar" aria-label=${words.title} aria-orientation="vertical">
@@ -144,26 +163,25 @@ export class StrataPictureBar extends LitElement {
           <button class="icon quiet" aria-label=${texts.views.fit} title=${withKey(texts.views.fit, "view.fit")} @click=${() => session.view.fit()}>
             ${icon("fit")}
           </button>
-          ${this.viewMenu()} ${kPartNames.map((part) => this.button(part))}
+          ${this.viewMenu()} ${names.map((part) => this.button(part))}
         </div>
       </div>
       ${open.length > 0 ? html`<div class="beside">${open.map((part) => this.controls(part))}</div>` : nothing}`;
   }
 
   private button(part: Part): TemplateResult {
-    const { appearance } = this.session;
-    const isOn =
-      part === "light" ? appearance.light.mode !== "museum" : appearance.section.mode !== "off";
+    const { glyph, key } = kParts[part];
+    const isOn = kParts[part].isOn(this.session);
     const label = texts.view[part];
     return html`<button
       class="icon quiet ${isOn ? "on" : ""}"
       aria-label=${label}
       data-part=${part}
       aria-expanded=${this._open.value.includes(part)}
-      title=${withKey(label, kParts[part].key)}
+      title=${key ? withKey(label, key) : label}
       @click=${() => this.toggle(part)}
     >
-      ${icon(kParts[part].glyph)}
+      ${icon(glyph)}
     </button>`;
   }
 

@@ -17,7 +17,7 @@ import "../../ui/status-page";
 import { askToDeleteProject } from "./delete-project-dialog";
 import { askToResetDemo, kDemoProject } from "./reset-demo-dialog";
 import { icon, logo } from "../../ui/icons";
-import type { ImportEntry, Imports } from "./imports";
+import { hasSeveralScans, type ImportEntry, type Imports } from "./imports";
 import { hasKeyboard } from "../../ui/keyboard";
 import "../../ui/menu";
 import { notices } from "../../ui/notices";
@@ -448,12 +448,12 @@ export class StrataHomePage extends LitElement {
         busy
           ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void this.cancel(entry)}>${texts.cancel}</button>`
           : html`${
-              entry.mayRepeat
+              entry.mayRepeat || hasSeveralScans(entry)
                 ? html`<button
-                  aria-label=${words.repeat_named(entry.name)}
+                  aria-label=${entry.mayRepeat ? words.repeat_named(entry.name) : nothing}
                   @click=${() => this.dispatchEvent(new CustomEvent<ImportEntry>("repeat-import", { detail: entry }))}
                 >
-                  ${words.repeat}
+                  ${entry.mayRepeat ? words.repeat : words.as_parts}
                 </button>`
                 : nothing
             }

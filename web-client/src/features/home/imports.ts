@@ -46,6 +46,8 @@ export type ScanFiles = readonly [DroppedFile, ...DroppedFile[]];
 export interface Scan {
   files: ScanFiles;
   name: string;
+  /** The files contain several scans, which become the parts of one model. */
+  parts?: true;
 }
 
 const folderOf = (path: string): string => path.slice(0, path.lastIndexOf("/") + 1);
@@ -75,7 +77,7 @@ function namesOf(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
 /**
  * Selects the scans from the dropped files. A single mesh gets all companion files. If there are
  * several meshes, each mesh gets the companion files whose paths start with the path of the mesh
- * without its extension. A notice reports the remaining files.
+ * without its extension.
  */
 export function chooseScans(files: readonly DroppedFile[]): Scan[] {
   const meshes = files.filter(({ path }) => kScans.test(path));
@@ -83,13 +85,11 @@ export function chooseScans(files: readonly DroppedFile[]): Scan[] {
   if (meshes.length === 0)
     return files.map((file): Scan => ({ files: [file], name: nameOfFile(file.file.name) }));
   const companions = files.filter(({ path }) => kCompanions.test(path));
-  const taken = new Set(meshes);
   const names = namesOf(meshes);
-  const scans = meshes.map((mesh): Scan => {
+  return meshes.map((mesh): Scan => {
     const own = companions.filter(
       ({ path }) => meshes.length === 1 || path.startsWith(stemOf(mesh.path)),
     );
-    for (const file of own) taken.add(file);
     const folder = folderOf(mesh.path);
     const beside = own.map(({ file, path }) => ({
       file,
@@ -100,13 +100,40 @@ export function chooseScans(files: readonly DroppedFile[]): Scan[] {
       name: names.get(mesh)!,
     };
   });
-  const left = files.filter((file) => !taken.has(file));
+}
+
+/** Reports the files that belong to none of the scans. */
+export function tellLeftOut(files: readonly DroppedFile[], scans: readonly Scan[]): void {
+  const taken = new Set(scans.flatMap((scan) => scan.files.map(({ file }) => file)));
+  const left = files.filter(({ file }) => !taken.has(file));
   if (left.length > 0) notices.show("info", texts.import.left_out(left.length, left[0]!.path));
-  return scans;
+}
+
+/**
+ * Returns one scan of all files, for a model with parts. It has the name of the innermost folder
+ * that contains all meshes, or of the first mesh.
+ */
+export function scanOfParts(scans: readonly Scan[], files: readonly DroppedFile[]): Scan {
+  const meshes = files.filter(({ path }) => kScans.test(path));
+  const [first, ...others] = meshes.map(({ path }) => folderOf(path).split("/").slice(0, -1));
+  let common = first?.length ?? 0;
+  for (const folders of others) {
+    const end = folders.findIndex((name, place) => name !== first![place]);
+    common = Math.min(common, end < 0 ? folders.length : end);
+  }
+  const rest = files.filter(({ path }) => kCompanions.test(path));
+  return {
+    files: [...meshes, ...rest] as unknown as ScanFiles,
+    name: first?.[common - 1] ?? scans[0]!.name,
+    parts: true,
+  };
 }
 
 /** Returns whether the server restarted or was unreachable, so the file is not the cause. */
 const mayRepeat = (status: number): boolean => status === 0 || status >= 500 || status === 429;
+
+/** Whether the import was refused because an archive contains several scans. */
+export const hasSeveralScans = ({ problem }: ImportEntry): boolean => problem?.field === "parts";
 
 export class Imports {
   entries: readonly ImportEntry[] = [];
@@ -159,6 +186,7 @@ export class Imports {
             project,
             unit: "proposed",
             up: "proposed",
+            ...(scan.parts ? { parts: true } : {}),
           },
         },
         scan.files,
@@ -180,11 +208,17 @@ export class Imports {
     if (job !== undefined) await this._api.send("DELETE /jobs/{job}", { path: { job } });
   }
 
-  /** Repeats a failed import from the start. Its entry keeps its position in the list. */
+  /**
+   * Repeats a failed import from the start. An archive with several scans that was refused now
+   * becomes a model with parts.
+   */
   async repeat(key: number): Promise<ImportResult> {
     const sent = this._sent.get(key);
+    const entry = this.entries.find((each) => each.key === key);
     this.dismiss(key);
-    return sent ? this.start(sent.scan, sent.project) : { model: null, problem: null };
+    if (!sent) return { model: null, problem: null };
+    const scan: Scan = entry && hasSeveralScans(entry) ? { ...sent.scan, parts: true } : sent.scan;
+    return this.start(scan, sent.project);
   }
 
   dismiss(key: number): void {

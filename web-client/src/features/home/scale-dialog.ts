@@ -249,6 +249,8 @@ function upReason({
       return words.comment_up(upComment ?? "");
     case "coordinates":
       return words.coordinates;
+    case "parts":
+      return words.parts;
     default:
       return upConfidence >= kSure ? words.shape(upName(up)) : words.shape_unsure(upName(up));
   }

@@ -171,7 +171,12 @@ export class Views {
   }
   private settingsText(): string {
     const { layers, appearance } = this._host;
-    return JSON.stringify([layers.toKeep(), appearance.toKeep(), appearance.section]);
+    return JSON.stringify([
+      layers.toKeep(),
+      appearance.toKeep(),
+      appearance.section,
+      [...appearance.hiddenParts].sort(),
+    ]);
   }
 
   // ── saving ─────────────────────────────────────────────────────────────────────────────────────

@@ -99,6 +99,7 @@ const look = (id: number, visible: boolean): Look => ({
 describe("how a person sees the model", () => {
   let sent: [LookShown[] | null, Light][];
   let planes: Plane[];
+  let hidden: readonly number[];
   let server: Look[];
   let refuseAfter: number;
   let appearance: Appearance;
@@ -106,6 +107,7 @@ describe("how a person sees the model", () => {
   beforeEach(() => {
     sent = [];
     planes = [];
+    hidden = [];
     server = [look(1, true), look(2, false), look(3, false)];
     refuseAfter = Infinity;
     const answer = (body: unknown): Response =>
@@ -123,7 +125,7 @@ describe("how a person sees the model", () => {
     });
     appearance = new Appearance(api, "1", {
       send: (looks, light) => sent.push([looks, light]),
-      sendSection: (of) => (planes = of),
+      sendSection: (of, parts) => ([planes, hidden] = [of, parts]),
       bounds: () => bounds,
       changed: vi.fn(),
     });
@@ -179,6 +181,7 @@ describe("how a person sees the model", () => {
   it("goes back to the beginning at once", () => {
     appearance.setLight({ mode: "raking", direction: [1, 0, 0.2] });
     appearance.setSection({ mode: "x" });
+    appearance.setHiddenParts(new Set([12, 3]));
     expect(sent.at(-1)![1]).toEqual({
       mode: "raking",
       direction: [1, 0, 0.2],
@@ -186,10 +189,12 @@ describe("how a person sees the model", () => {
       layer_opacity: 0.3,
     });
     expect(planes).toHaveLength(1);
+    expect(hidden).toEqual([3, 12]);
     expect(appearance.isDefault).toBe(false);
     appearance.reset();
     expect(appearance.isDefault).toBe(true);
     expect(planes).toEqual([]);
+    expect(hidden).toEqual([]);
     expect(sent.at(-1)![1].mode).toBe("museum");
   });
 

@@ -2,7 +2,7 @@ import { describe, expect, it, vi } from "vitest";
 import { fakeApi } from "../../fake-api";
 import { ApiError } from "../../../src/net/api-error";
 import type { Job } from "../../../src/core/types";
-import { Imports, type Scan } from "../../../src/features/home/imports";
+import { chooseScans, Imports, scanOfParts, type Scan } from "../../../src/features/home/imports";
 
 const scan: Scan = {
   files: [{ file: new File(["ply"], "mesh.ply"), path: "mesh.ply" }],
@@ -74,5 +74,48 @@ describe("an import", () => {
     } finally {
       vi.useRealTimers();
     }
+  });
+});
+
+describe("several scans as the parts of one model", () => {
+  const dropped = (...paths: string[]): { file: File; path: string }[] =>
+    paths.map((path) => ({ file: new File(["x"], path.split("/").at(-1)!), path }));
+
+  it("keep their folders and the files that they use", () => {
+    const files = dropped(
+      "Church/Tower/a.obj",
+      "Church/wood.jpg",
+      "Church/Nave/a.ply",
+      "notes.txt",
+    );
+    const scan = scanOfParts(chooseScans(files), files);
+    expect(scan.name).toBe("Church");
+    expect(scan.parts).toBe(true);
+    expect(scan.files.map(({ path }) => path)).toEqual([
+      "Church/Tower/a.obj",
+      "Church/Nave/a.ply",
+      "Church/wood.jpg",
+    ]);
+  });
+  it("have the name of the first scan without a common folder", () => {
+    const files = dropped("north.ply", "south.ply");
+    expect(scanOfParts(chooseScans(files), files).name).toBe("north");
+  });
+  it("follow an archive that was refused", async () => {
+    const queries: unknown[] = [];
+    const refused = { ...problem(422), field: "parts" };
+    const states: Job[] = [job("failed", { problem: refused }), job("done", { model: 4 })];
+    const imports = new Imports(
+      fakeApi({
+        "POST /models": ({ query }) => {
+          queries.push(query?.parts);
+          return states.shift()!;
+        },
+      }),
+    );
+    const zip: Scan = { files: [{ file: new File(["x"], "a.zip"), path: "a.zip" }], name: "a" };
+    expect(await imports.start(zip, "default")).toEqual({ model: null, problem: refused });
+    expect(await imports.repeat(imports.entries[0]!.key)).toEqual({ model: 4, problem: null });
+    expect(queries).toEqual([undefined, true]);
   });
 });

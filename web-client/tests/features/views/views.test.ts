@@ -307,6 +307,7 @@ interface Seen {
   direction: [number, number, number];
   exposure: number;
   fill: number;
+  hiddenParts: number[];
   layers: { visible: boolean; opacity: number; ownPalette: boolean; key: number | null }[];
   looks: { visible: boolean; opacity: number }[];
 }
@@ -335,6 +336,7 @@ const whatIsSeen: fc.Arbitrary<Seen> = fc.record({
     }),
     { minLength: 2, maxLength: 2 },
   ),
+  hiddenParts: fc.uniqueArray(fc.nat(255), { maxLength: 5 }),
   looks: fc.array(fc.record({ visible: fc.boolean(), opacity: anOpacity }), {
     minLength: 3,
     maxLength: 3,
@@ -348,6 +350,7 @@ function see(seen: Seen): void {
   view.setPerspective(seen.perspective);
   view.zoomAt(seen.zoom, 300, 200);
   appearance.setSection(seen.section);
+  appearance.setHiddenParts(new Set(seen.hiddenParts));
   const { light: mode, direction, exposure, fill } = seen;
   appearance.setLight({ mode, direction, exposure, fill });
   layers.all.forEach((each, index) => {
@@ -383,6 +386,7 @@ function expectSame({ camera, ...rest }: ViewContent, then: ViewContent | View):
     cameraThen.height,
     cameraThen.section?.length,
   ]);
+  expect(camera.hidden_parts).toEqual(cameraThen.hidden_parts);
   (camera.section ?? []).forEach((plane, index) =>
     plane.forEach((part, at) =>
       expect(Math.abs(part - cameraThen.section![index]![at]!)).toBeLessThan(1e-6),
