@@ -147,5 +147,13 @@ export const help: HelpTexts = {
       "Ansicht → Führungen",
       "gespeicherte Ansichten mit Texten in mehreren Sprachen, für einen Bildschirm in einer Ausstellung; Kiosk-Links im ⋯ einer Führung",
     ],
+    [
+      "Ansicht → Abrechnung",
+      "Positionen, die Flächen, Längen und Datensätze nach Regeln zählen; Hoch · Runter bewegen, Rechts · Links öffnen und schließen Gruppen, Enter ändert, Einfg ergänzt, Entf entfernt",
+    ],
+    [
+      "Teile, über der 3D-Ansicht",
+      "die Scans eines Modells zeigen und ausblenden, das aus mehreren importiert wurde",
+    ],
   ],
 };

@@ -121,5 +121,13 @@ export const help = {
       "View → Tours",
       "saved views with texts in several languages, for a screen in an exhibition; kiosk links in a tour's ⋯",
     ],
+    [
+      "View → Billing",
+      "positions that count areas, lengths and records by rules; Up · Down move, Right · Left open and close groups, Enter edits, Insert adds, Delete removes",
+    ],
+    [
+      "Parts, over the 3D view",
+      "show and hide the scans of a model that was imported from several ones",
+    ],
   ],
 };

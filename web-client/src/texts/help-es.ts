@@ -147,5 +147,13 @@ export const help: HelpTexts = {
       "Vista → Recorridos",
       "vistas guardadas con textos en varios idiomas, para una pantalla de una exposición; enlaces para quioscos en el ⋯ de un recorrido",
     ],
+    [
+      "Vista → Mediciones",
+      "partidas que cuentan áreas, longitudes y registros según reglas; Arriba · Abajo mueven, Derecha · Izquierda abren y cierran grupos, Intro edita, Insert añade, Supr quita",
+    ],
+    [
+      "Partes, sobre la vista 3D",
+      "mostrar y ocultar los escaneos de un modelo importado de varios",
+    ],
   ],
 };
