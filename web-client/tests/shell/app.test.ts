@@ -3,7 +3,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { BrushSettings } from "../../src/features/painting/brush-settings";
 import { describeValue, valueProblem } from "../../src/session/layer-values";
 import type { DroppedFile } from "../../src/ui/drop";
-import { chooseScans } from "../../src/features/home/imports";
+import { chooseScans, tellLeftOut } from "../../src/features/home/imports";
 import { arrowStep } from "../../src/ui/keyboard";
 import { layerChanges } from "../../src/features/layers/layer-changes";
 import { notices } from "../../src/ui/notices";
@@ -194,7 +194,10 @@ describe("dropped files", () => {
     expect(names("deep/down/mesh_1.obj")).toEqual(["mesh 1"]);
   });
   it("what is left over is told", () => {
-    expect(chosen("a.obj", "readme.txt")).toEqual([["a.obj"]]);
+    const files = named("a.obj", "readme.txt");
+    const scans = chooseScans(files);
+    expect(scans.map((scan) => scan.files.map(({ path }) => path))).toEqual([["a.obj"]]);
+    tellLeftOut(files, scans);
     expect(told()).toContain(texts.import.left_out(1, "readme.txt"));
   });
   it("without a mesh each is refused by its own name", () => {
