@@ -38,6 +38,16 @@ std::optional<protocol::BillRuleMeasure> measure_of_unit(std::string_view unit) 
   return found == kUnits.end() ? std::nullopt : std::optional(found->second);
 }
 
+std::string_view usual_unit(protocol::BillRuleMeasure measure) {
+  using Measure = protocol::BillRuleMeasure;
+  switch (measure) {
+    case Measure::area: return "m2";
+    case Measure::length: return "m";
+    case Measure::volume: return "m3";
+    default: return "St";
+  }
+}
+
 std::optional<double> metres_of_unit(std::string_view unit) {
   if (unit == "mm") return 0.001;
   if (unit == "cm") return 0.01;

@@ -12,6 +12,9 @@ namespace strata::bill {
 // other units, such as psch and h, whose positions have hand measurements only.
 std::optional<protocol::BillRuleMeasure> measure_of_unit(std::string_view unit);
 
+// Returns the unit that bills usually have for a measure: m2, m, m3 or St.
+std::string_view usual_unit(protocol::BillRuleMeasure measure);
+
 // Returns the length of a unit of depths, mm, cm or m, in meters, or nullopt for other units.
 std::optional<double> metres_of_unit(std::string_view unit);
 

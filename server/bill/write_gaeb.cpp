@@ -7,6 +7,7 @@
 #include "bill/gaeb.h"
 #include "bill/items.h"
 #include "bill/reb_rows.h"
+#include "bill/units.h"
 #include "core/text/printable.h"
 #include "core/text/utf8.h"
 
@@ -19,6 +20,7 @@ using protocol::BillItemKind;
 constexpr int kQuantityPlaces = 3, kPricePlaces = 2;  // tgDecimal_11_3 and tgDecimal_13_2
 constexpr std::size_t kMaxLevels = 6;                 // of groups
 constexpr std::size_t kMaxIndex = 4;                  // characters of an RNoIndex
+constexpr std::size_t kUnitCharacters = 4;            // tgQU
 
 void add(pugi::xml_node parent, const char* name, const std::string& text) {
   parent.append_child(name).text().set(printable(text).c_str());
@@ -218,10 +220,22 @@ class Writer {
                 "format");
   }
 
-  Result<void> add_position(pugi::xml_node node, const BillItem& item, const Position& position) {
+  // Returns the unit in at most kUnitCharacters. Known longer units have a shorter form.
+  static Result<std::string> unit_of(const BillItem& item) {
     if (item.unit.empty())
       return fail(ErrorCode::invalid, "Unit missing",
                   "GAEB needs the unit of position `" + item.number + "`.", "format");
+    if (character_count(item.unit) <= kUnitCharacters) return item.unit;
+    if (const auto measure = measure_of_unit(item.unit)) return std::string(usual_unit(*measure));
+    return fail(ErrorCode::invalid, "Unit too long for GAEB",
+                "GAEB allows " + std::to_string(kUnitCharacters) +
+                    " characters, but the unit of position `" + item.number + "` is `" + item.unit +
+                    "`. Shorten it, or use XLSX.",
+                "format");
+  }
+
+  Result<void> add_position(pugi::xml_node node, const BillItem& item, const Position& position) {
+    const std::string unit = STRATA_TRY(unit_of(item));
     const bool has_prices = phase_ != GaebPhase::x83;
     if (has_prices && !item.unit_price)
       return fail(ErrorCode::invalid, "Price missing",
@@ -234,7 +248,7 @@ class Writer {
     STRATA_TRY(check_range(item, quantity, 100'000'000));
     STRATA_TRY(check_places(item, quantity, kQuantityPlaces, "quantity"));
     add(node, "Qty", quantity.text(kQuantityPlaces));
-    add(node, "QU", cut(item.unit, 4));
+    add(node, "QU", unit);
     if (has_prices) {
       const ExactNumber price = *ExactNumber::parse(*item.unit_price);
       STRATA_TRY(check_places(item, price, kPricePlaces, "unit price"));

@@ -177,6 +177,22 @@ TEST(WriteGaeb, has_the_elements_of_each_phase_in_the_order_of_the_schema) {
             (Names{"RefBoQName", "BoQBkdn", "BoQBkdn", "BoQBody"}));
 }
 
+TEST(WriteGaeb, units_have_at_most_four_characters) {
+  protocol::BillWrite bill = tender().bill;
+  const auto unit = [&](const std::string& name) {
+    bill.items->at(1).unit = name;
+    pugi::xml_document document;
+    EXPECT_TRUE(document.load_string(written(bill, GaebPhase::x83).c_str()));
+    return std::string(document.document_element()
+                           .first_element_by_path("Award/BoQ/BoQBody/BoQCtgy/BoQBody/Itemlist/Item")
+                           .child_value("QU"));
+  };
+  EXPECT_EQ(unit("m²"), "m²");
+  EXPECT_EQ(unit("psch"), "psch");
+  EXPECT_EQ(unit("Stück"), "St");
+  EXPECT_EQ(unit("lfdm."), "m");
+}
+
 // Rounded, the receiver would compute other totals than the bill has.
 TEST(WriteGaeb, numbers_with_more_places_than_gaeb_allows_are_refused) {
   protocol::BillWrite bill = tender().bill;
@@ -236,6 +252,8 @@ TEST(WriteGaeb, refuses_what_the_format_does_not_allow) {
   EXPECT_EQ(written(bill, GaebPhase::x84), "error: Price missing");
   bill.items->at(1).unit.clear();
   EXPECT_EQ(written(bill, GaebPhase::x83), "error: Unit missing");
+  bill.items->at(1).unit = "Wochen";
+  EXPECT_EQ(written(bill, GaebPhase::x83), "error: Unit too long for GAEB");
   bill = tender().bill;
   protocol::BillItem high;
   high.number = "02";
