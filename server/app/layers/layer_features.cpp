@@ -266,9 +266,13 @@ Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& req
   set.epsg = epsg_of(model, request.plane.depth);
   set.description = request.layer.name + " on " + model.name + ": " + set.axes + " in " + set.unit;
   if (request.with_areas) {
-    auto outlines = query::plane_outlines(
-        classes.areas.view, *request.room->surface().geometry(), *classes.areas.map,
-        query::classes_of(classes.areas.view.layer), request.plane);
+    std::set<std::uint32_t> chosen;
+    for (std::size_t i = 0; request.outlines && i < classes.classes.size(); ++i)
+      if (request.outlines(i, classes.table.features[i])) chosen.insert(classes.classes[i]);
+    auto outlines =
+        query::plane_outlines(classes.areas.view, *request.room->surface().geometry(),
+                              *classes.areas.map, query::classes_of(classes.areas.view.layer),
+                              request.plane, request.outlines ? &chosen : nullptr);
     if (!outlines) return tl::unexpected(outlines.error());
     for (std::size_t i = 0; i < classes.classes.size(); ++i)
       if (const auto outline = outlines->find(classes.classes[i]); outline != outlines->end())

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "app/layers/feature_set.h"
 #include "domain/layers/layer.h"
 #include "domain/people/role.h"
@@ -20,6 +22,9 @@ struct FeatureRequest {
   std::string language;  // for the labels of terms
   // The tables to return: the areas, and the lines and points of records.
   bool with_areas = true, with_marks = true;
+  // Returns whether the area of a class is outlined. The others have no geometry. It gets the
+  // number of the feature in the table and the feature. Empty: all are outlined.
+  std::function<bool(std::size_t number, const Feature& feature)> outlines{};
 };
 
 // Returns the areas of a layer's classes. For a database layer, also returns the lines and points

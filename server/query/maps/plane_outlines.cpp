@@ -30,15 +30,17 @@ constexpr std::size_t kBytesOfTriangle = 110;  // memory to build the rims and t
 class Labels {
  public:
   Labels(const LayerView& view, const mesh::SurfaceMap& map, const ValueClasses& classes,
-         const OutlinePlane& plane)
+         const OutlinePlane& plane, const std::set<std::uint32_t>* only)
       : map_(map), plane_(plane), of_texel_(map.block_of_slot.size() * 64, 0) {
     const QuestionTurn turn;
     for (const auto& [address, tile] : sorted_tiles(view.snapshot.tiles)) {
       turn.check(kTexelsPerTile);
       for_each_value(*tile, address, view.layer.type, map, nullptr,
                      [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {
+                       const std::uint32_t a_class = classes.of(bits, value);
+                       if (only && !only->contains(a_class)) return;
                        const auto [known, is_new] = number_of_.try_emplace(
-                           classes.of(bits, value), static_cast<std::uint32_t>(classes_.size()));
+                           a_class, static_cast<std::uint32_t>(classes_.size()));
                        if (is_new) classes_.push_back(known->first);
                        const bool turned = is_turned(slot, texel);
                        of_texel_[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)] =
@@ -193,10 +195,11 @@ Result<PlaneOutlines> outlines_of(const Labels& labels, const std::vector<TexelR
 
 Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry& geometry,
                                      const mesh::SurfaceMap& map, const ValueClasses& classes,
-                                     const OutlinePlane& plane) {
+                                     const OutlinePlane& plane,
+                                     const std::set<std::uint32_t>* only) {
   const QuestionMemory memory(map.block_of_slot.size() * 64 * sizeof(std::uint32_t) +
                               geometry.triangle_count() * kBytesOfTriangle);
-  const Labels labels(view, map, classes, plane);
+  const Labels labels(view, map, classes, plane, only);
   if (labels.classes().empty()) return PlaneOutlines{};
   std::vector<TexelRegion> regions;
   if (!find_regions(map, labels.of_texel(), kMaxOutlineCorners, regions))

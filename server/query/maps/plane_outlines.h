@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 
 #include "query/maps/flat_area.h"
 #include "query/sampling/values.h"
@@ -31,11 +32,14 @@ inline constexpr std::size_t kMaxOutlineCorners = 4'000'000;
 // seams without a gap. Simplification moves lines by at most half the mean width of a texel. Parts
 // of one class that overlap in the plane are merged.
 //
+// `only` contains the classes to outline. Null: all.
+//
 // `map` has the resolution of the layer. More than kMaxOutlineCorners corners are an `invalid`
 // error.
 using PlaneOutlines = std::map<std::uint32_t, std::vector<FlatPolygon>>;
 Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry& geometry,
                                      const mesh::SurfaceMap& map, const ValueClasses& classes,
-                                     const OutlinePlane& plane);
+                                     const OutlinePlane& plane,
+                                     const std::set<std::uint32_t>* only = nullptr);
 
 }  // namespace strata::query

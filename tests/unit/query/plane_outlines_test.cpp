@@ -93,6 +93,20 @@ Surface two_lobes() {
   return surface;
 }
 
+TEST(PlaneOutlines, are_made_of_the_chosen_classes_only) {
+  const Surface surface = flat_sheet();
+  LayerView view;
+  view.layer.type = ValueType::u8;
+  view.layer.resolution = surface.map.resolution;
+  view.snapshot.tiles = test::layer_of(surface.map, disc_with_a_core);
+  const std::set<std::uint32_t> core{2};
+  const auto some = plane_outlines(view, surface.geometry, surface.map, kEach, {}, &core);
+  const PlaneOutlines all = outlines(surface, disc_with_a_core);
+  ASSERT_TRUE(some);
+  ASSERT_EQ(some->size(), 1u);
+  EXPECT_DOUBLE_EQ(area_of(some->at(2)), area_of(all.at(2)));
+}
+
 TEST(PlaneOutlines, lobes_of_a_chart_that_meet_in_one_vertex_are_both_there) {
   const Surface surface = two_lobes();
   const auto everywhere = [](glm::vec3) { return 1; };

@@ -69,7 +69,7 @@ class Manifest {
       json["requiredStatement"] = {{"label", english("Attribution")},
                                    {"value", texts(model_.credit)}};
     if (is_iri(model_.rights_uri)) json["rights"] = rights_of(model_.rights_uri);
-    if (with_surface) json["items"].push_back(scene(views));
+    json["items"].push_back(scene(views, with_surface));
     for (const ManifestView& view : views) json["items"].push_back(canvas(view));
     return json;
   }
@@ -96,7 +96,8 @@ class Manifest {
     return pages;
   }
 
-  nlohmann::json scene(const std::vector<ManifestView>& views) const {
+  // Without the surface, the scene still has the cameras, and the annotations refer to it.
+  nlohmann::json scene(const std::vector<ManifestView>& views, bool with_surface) const {
     const std::string id = addresses_.scene(model_.id), manifest = addresses_.manifest(model_.id);
     const nlohmann::json whole{{"id", id}, {"type", "Scene"}};
     nlohmann::json surface{{"id", addresses_.api(model_) + "/surface.glb"},
@@ -111,10 +112,11 @@ class Manifest {
           {"source", std::move(surface)},
           {"transform",
            {{{"type", "TranslateTransform"}, {"x", moved.x}, {"y", moved.y}, {"z", moved.z}}}}};
-    nlohmann::json items{painting(manifest + "#model", std::move(surface), whole)};
+    nlohmann::json items = nlohmann::json::array();
+    if (with_surface) items.push_back(painting(manifest + "#model", std::move(surface), whole));
     for (const ManifestView& view : views) {
       items.push_back(camera(view));
-      if (items.size() > 2) items.back()["behavior"] = {"hidden"};
+      if (&view != &views.front()) items.back()["behavior"] = {"hidden"};
     }
     return {{"id", id},
             {"type", "Scene"},

@@ -18,7 +18,7 @@ struct ManifestView {
 // Returns the IIIF manifest of a model (Presentation API 4.0). Its scene contains the surface as
 // GLB, in meters, with a camera for each saved view. The first camera is the initial one. Its
 // canvases are pictures of the views. `with_surface` is false if the caller must not get the
-// surface: the manifest then contains only the canvases. `layers` are those with annotations.
+// surface: the scene then has only cameras. `layers` are those with annotations.
 nlohmann::json iiif_manifest(const LinkedAddresses& addresses, const Model& model,
                              const std::vector<ManifestView>& views,
                              const std::vector<Layer>& layers, bool with_surface);

@@ -18,7 +18,7 @@ namespace strata::net {
 nlohmann::json linked_catalog(const LinkedAddresses& addresses, const std::vector<Model>& models,
                               const std::vector<Table>& tables);
 
-// A table of records as a dataset. `keys` are those of its first records.
+// A table of records as a dataset. `keys` are those of the records on a page.
 nlohmann::json linked_table(const LinkedAddresses& addresses, const Table& table,
                             std::span<const std::int64_t> keys);
 

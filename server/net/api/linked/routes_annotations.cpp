@@ -61,27 +61,45 @@ struct LayerAnnotations {
   std::vector<app::FeatureTable> tables;
 };
 
-// Returns the features with world coordinates. Areas are outlined on the plane on which the model
-// is largest. An area that is seen edge-on there is outlined on another plane.
-Result<LayerAnnotations> annotations_in(const RouteContext& context, const Request& request) {
+// Chooses among the areas of a layer, by their number and content.
+using Choice = std::function<bool(std::size_t number, const app::Feature& feature)>;
+
+// Returns the features with world coordinates. The chosen areas are outlined on the plane on which
+// the model is largest. An area that is seen edge-on there is outlined on another plane.
+Result<LayerAnnotations> annotations_in(const RouteContext& context, const Request& request,
+                                        const Choice& chosen) {
   const auto room = STRATA_TRY(open_room(context, request));
   LayerAnnotations found{
       room->model(), STRATA_TRY(room->layers().find(request.param("layer"))), {}};
   const query::OutlinePlane first = app::GisPlane(found.model, std::nullopt).outline();
-  const auto is_flat = [](const app::Feature& feature) { return feature.geometry.empty(); };
+  const auto lacks_outline = [&](std::size_t number, const app::Feature& feature) {
+    return chosen(number, feature) && feature.geometry.empty();
+  };
   for (const query::OutlinePlane& plane :
        {first, query::OutlinePlane{first.up, first.depth, first.right},
         query::OutlinePlane{first.depth, first.right, first.up}}) {
     const bool is_first = found.tables.empty();
+    const auto outlined = [&](std::size_t number, const app::Feature& feature) {
+      if (is_first) return chosen(number, feature);
+      // The layer may have changed since the first outlines.
+      const auto& areas = found.tables.front().features;
+      return number < areas.size() && areas[number].id == feature.id &&
+             lacks_outline(number, areas[number]);
+    };
     auto set = STRATA_TRY(app::layer_features(
-        context.store, {room, found.layer, {}, plane, request.role(), {}, true, is_first}));
+        context.store,
+        {room, found.layer, {}, plane, request.role(), {}, true, is_first, outlined}));
     for (app::FeatureTable& table : set.tables)
       for (app::Feature& feature : table.features) turn_to_world(feature.geometry, plane);
     if (is_first)
       found.tables = std::move(set.tables);
     else
       take_outlines(found.tables.front().features, set.tables.front().features);
-    if (std::ranges::none_of(found.tables.front().features, is_flat)) break;
+    const auto& areas = found.tables.front().features;
+    std::size_t number = 0;
+    if (std::ranges::none_of(
+            areas, [&](const app::Feature& area) { return lacks_outline(number++, area); }))
+      break;
   }
   return found;
 }
@@ -170,7 +188,10 @@ Result<Response> comments_page(const RouteContext& context, const Request& reque
 
 Result<Response> layer_page(const RouteContext& context, const Request& request) {
   const auto page = STRATA_TRY(asked_page(request));
-  const auto found = STRATA_TRY(annotations_in(context, request));
+  const auto found =
+      STRATA_TRY(annotations_in(context, request, [&](std::size_t number, const app::Feature&) {
+        return number / kPerPage == page.number;
+      }));
   const LinkedAddresses addresses(context, request);
   const SceneFrame frame(found.model);
   nlohmann::json items = nlohmann::json::array();
@@ -194,7 +215,11 @@ Result<Response> layer_page(const RouteContext& context, const Request& request)
 }
 
 Result<Response> layer_annotation(const RouteContext& context, const Request& request) {
-  const auto found = STRATA_TRY(annotations_in(context, request));
+  const std::string& name = request.param("annotation");
+  const auto found =
+      STRATA_TRY(annotations_in(context, request, [&](std::size_t, const app::Feature& feature) {
+        return name == "areas." + feature.id;
+      }));
   const LinkedAddresses addresses(context, request);
   for (const app::FeatureTable& table : found.tables)
     for (const app::Feature& feature : table.features)

@@ -4,6 +4,7 @@
 #include "app/records/painted_keys.h"
 #include "app/records/record_csv.h"
 #include "core/no_such.h"
+#include "core/text/number_text.h"
 #include "core/text/timestamp.h"
 #include "domain/layers/layer.h"
 #include "domain/tables/label_text.h"
@@ -97,6 +98,10 @@ Result<Response> get_table(const RouteContext& context, const Request& request) 
   const LinkedAddresses addresses(context, request);
   store::RecordQuery query;
   query.limit = term_columns(table) ? store::kMaxRecords : kListedRecords;
+  std::int64_t number = 0;
+  if (const auto asked = request.query.find("page"); asked != request.query.end())
+    number = STRATA_TRY(parse_integer(asked->second, 0, 1'000'000, "page"));
+  if (!term_columns(table)) query.offset = number * kListedRecords;
   const auto page = STRATA_TRY(context.store.records().page(table.id, request.role(), query));
   if (const auto columns = term_columns(page.table))
     return linked_response(context, request,
@@ -104,8 +109,13 @@ Result<Response> get_table(const RouteContext& context, const Request& request) 
                            catalog_terms());
   std::vector<std::int64_t> keys;
   for (const Record& record : page.records) keys.push_back(record.key);
-  return linked_response(context, request, linked_table(addresses, page.table, keys),
-                         catalog_terms());
+  nlohmann::json json = linked_table(addresses, page.table, keys);
+  const std::string first = addresses.table(table.id);
+  if (query.offset + kListedRecords < page.total)
+    json["next"] = first + "?page=" + std::to_string(number + 1);
+  if (number > 0)
+    json["previous"] = number == 1 ? first : first + "?page=" + std::to_string(number - 1);
+  return linked_response(context, request, std::move(json), catalog_terms());
 }
 
 Result<Response> concept_of(const RouteContext& context, const Request& request, const Table& table,
@@ -262,7 +272,7 @@ void add_linked_routes(Router& router, const RouteContext& context) {
   add("/id/models/{model}/layers/{layer}", get_layer);
   add("/id/models/{model}/manifest", get_manifest, false, {});
   add("/id/projects/{project}/objects/{object}", get_object);
-  add("/id/tables/{table}", get_table);
+  add("/id/tables/{table}", get_table, false, {"f", "page"});
   add("/id/tables/{table}/records/{key}", get_record, true, {"f", "lang"});
 }
 
