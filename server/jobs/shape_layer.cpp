@@ -83,6 +83,10 @@ class Measure {
       case ShapeKind::sun_energy: return sun();
       case ShapeKind::driving_rain: return rain();
       case ShapeKind::vertex_property: return property();
+      case ShapeKind::part:
+        return SurfaceValue([this](std::uint32_t t, const glm::vec3&) {
+          return static_cast<double>(geometry_->part_of(t));
+        });
       case ShapeKind::lightness: break;
     }
     return fail(ErrorCode::internal, "Unknown kind",
@@ -438,7 +442,9 @@ ShapeLayer described(TileMap tiles, const ShapeRecipe& recipe, const Model& mode
   layer.tiles = std::move(tiles);
   layer.unit = unit_of(recipe, model);
   layer.description = description_of(recipe, model, other);
-  layer.palette = palette_of(recipe.kind, range_of(layer.tiles, type));
+  layer.palette = recipe.kind == ShapeKind::part
+                      ? palette_of(model.parts)
+                      : palette_of(recipe.kind, range_of(layer.tiles, type));
   layer.recipe = to_json(recipe);
   return layer;
 }

@@ -6,13 +6,14 @@
 #include <utility>
 
 #include "core/text/number_text.h"
+#include "core/text/utf8.h"
 #include "domain/scene/compass.h"
 #include "mesh/analysis/surface_samples.h"
 
 namespace strata::jobs {
 namespace {
 
-constexpr std::array<std::string_view, 19> kNames{"height",
+constexpr std::array<std::string_view, 20> kNames{"height",
                                                   "slope",
                                                   "azimuth",
                                                   "mean_curvature",
@@ -30,8 +31,10 @@ constexpr std::array<std::string_view, 19> kNames{"height",
                                                   "sun_energy",
                                                   "driving_rain",
                                                   "vertex_property",
+                                                  "part",
                                                   "lightness"};
 
+constexpr std::size_t kMaxLabel = 200;  // bytes, of a class
 constexpr double kEdgesPerRadius = 4;
 // The cylinder then contains about 50 vertices of each mesh. Lague et al. recommend at least 20.
 constexpr double kEdgesPerProjection = 8;
@@ -379,6 +382,7 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
     case ShapeKind::driving_rain: return "Rain on the surface" + climate_of(r);
     case ShapeKind::vertex_property:
       return "Property " + r.property + " of the scan's vertices, from " + r.source + ".";
+    case ShapeKind::part: return "Part of the model, by its number.";
     case ShapeKind::lightness:
       return "Lightness (L* of CIELAB) of " +
              (r.look.empty() ? "the visible colors" : "the surface image " + other) +
@@ -405,6 +409,10 @@ bool is_sun(ShapeKind kind) {
   return kind == ShapeKind::sun_hours || kind == ShapeKind::sun_energy;
 }
 
+bool has_classes(ShapeKind kind) {
+  return kind == ShapeKind::significant_change || kind == ShapeKind::part;
+}
+
 DaysOfYear days_of(const ShapeRecipe& recipe) {
   constexpr int kDaysPerYear = 365;
   const int first = day_of_year(recipe.from).value_or(0),
@@ -414,6 +422,9 @@ DaysOfYear days_of(const ShapeRecipe& recipe) {
 
 Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model, const Model* other) {
   STRATA_TRY(check_members(recipe));
+  if (recipe.kind == ShapeKind::part && model.parts.empty())
+    return fail(ErrorCode::invalid, "No parts",
+                "This model was imported from one scan, so it has no parts.", "compute.kind");
   if (is_change(recipe.kind)) {
     STRATA_TRY(complete_scales(recipe, model, other ? *other : model));
     return recipe;
@@ -494,6 +505,7 @@ std::string unit_of(const ShapeRecipe& recipe, const Model& model) {
     case ShapeKind::significant_change:
     case ShapeKind::ambient_occlusion:
     case ShapeKind::lightness:
+    case ShapeKind::part:
     case ShapeKind::vertex_property: return "";
     default: return unit;
   }
@@ -504,6 +516,17 @@ std::string description_of(const ShapeRecipe& recipe, const Model& model,
   if (recipe.kind == ShapeKind::lightness) return sentence(recipe, model, other);
   return sentence(recipe, model, other) + " Computed from the mesh of " +
          std::to_string(model.triangles) + " triangles.";
+}
+
+Palette palette_of(const std::vector<ModelPart>& parts) {
+  Palette palette{PaletteMode::categorical, 0, static_cast<double>(parts.size() - 1), {}, {}};
+  for (std::uint32_t number = 0; number < parts.size(); ++number) {
+    const ModelPart& part = parts[number];
+    const std::string label = part.folder.empty() ? part.name : part.folder + "/" + part.name;
+    palette.points.push_back({static_cast<double>(number), generated_color(number + 1),
+                              std::string(first_bytes(label, kMaxLabel))});
+  }
+  return palette;
 }
 
 Palette palette_of(ShapeKind kind, const ValueRange& range) {
@@ -530,6 +553,7 @@ Palette palette_of(ShapeKind kind, const ValueRange& range) {
     case ShapeKind::vertex_property: return viridis(range.low, range.high);
     case ShapeKind::lightness: return linear(0, 100, {{0, 0, 0, 255}, {255, 255, 255, 255}});
     case ShapeKind::boundary_distance: return viridis(0, rounded(range.most));
+    case ShapeKind::part:
     case ShapeKind::height: break;
   }
   return viridis(range.least, range.most);

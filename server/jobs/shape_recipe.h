@@ -31,6 +31,7 @@ enum class ShapeKind {
   sun_energy,          // of direct sun in a period of the year, in kWh/m²
   driving_rain,        // in l/m²
   vertex_property,
+  part,      // the number of the model's part
   lightness  // L* of CIELAB, of the colors of the scan or of a surface image
 };
 std::string_view name(ShapeKind kind);
@@ -39,6 +40,8 @@ std::optional<ShapeKind> parse_shape_kind(std::string_view name);
 bool is_change(ShapeKind kind);
 // Returns whether the values are those of the sun in a period.
 bool is_sun(ShapeKind kind);
+// Returns whether the values are numbers of classes, not measurements.
+bool has_classes(ShapeKind kind);
 
 // The parameters of a layer that is computed from a model's shape. `completed` replaces empty
 // fields by defaults for the model.
@@ -88,9 +91,12 @@ nlohmann::json to_json(const ShapeRecipe& recipe);
 std::string unit_of(const ShapeRecipe& recipe, const Model& model);
 std::string description_of(const ShapeRecipe& recipe, const Model& model, const std::string& other);
 
-// Returns a palette for the kind over the range of the values. `low` and `high` are the 2nd and the
-// 98th percentile of the values, `least` and `most` are the ends of their range. Palettes of signed
-// values diverge around 0. The palette of azimuths is circular.
+// Returns the palette of the parts of a model, with their folders and names.
+Palette palette_of(const std::vector<ModelPart>& parts);
+
+// Returns a palette for a kind without parts over the range of the values. `low` and `high` are the
+// 2nd and the 98th percentile of the values, `least` and `most` are the ends of their range.
+// Palettes of signed values diverge around 0. The palette of azimuths is circular.
 struct ValueRange {
   double least = 0, low = 0, high = 1, most = 1;
 };

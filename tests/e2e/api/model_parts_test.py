@@ -1,6 +1,7 @@
 """Models of several scans: the tree of their parts, hidden parts in pictures, picks and strokes,
 the stored files, and what is refused."""
 import io
+import pathlib
 import uuid
 import zipfile
 
@@ -8,7 +9,14 @@ import pytest
 from support.cameras import camera_from
 from support.live_client import LAST_RECTANGLE, LiveClient
 from support.meshes import folded_grid, ply
+from support.missing import missing
 
+DATA = pathlib.Path(__file__).resolve().parents[4] / "shared" / "data"
+SCANS = (
+    "statue_nefertiti_70k.ply",
+    "gargoyle_3dhop_50k_colour_normals.ply",
+    "vessel_lekythos_gigamesh_15k_vcolour.obj",
+)
 M = "/models/church"
 SIDE = 10.0
 
@@ -171,6 +179,28 @@ def test_a_view_and_a_figure_keep_hidden_parts(server, from_above):
     server.ok("POST", M + "/layers/damp/undo")
 
 
+def test_a_layer_of_the_parts_divides_quantities(server):
+    asked = {"name": "Part", "compute": {"kind": "part"}, "resolution": 2048}
+    job = server.wait_for_job(server.ok("POST", M + "/layers", asked).json()["id"])
+    assert job["state"] == "done", job
+    layer = server.get(M + "/layers/part").json()
+    assert layer["type"] == "u8"
+    assert [point["label"] for point in layer["palette"]["points"]] == [
+        "Roof",
+        "Nave/Floor",
+        "Nave/Vault",
+    ]
+    selected = {"where": "part = 2"}
+    filled = {"op": "fill", "mode": "where", **selected, "value": 1}
+    server.ok("POST", M + "/layers/damp/edits", filled)
+    area = server.get(M + "/layers/damp/statistics").json()["area_m2"]
+    assert abs(area - SIDE * SIDE) < 0.01 * SIDE * SIDE
+    assert painted_heights(server) == [5]
+    alone = server.import_model(folded_grid(), "single.ply")
+    refused = server.post(f"/models/{alone['id']}/layers", asked)
+    assert refused.status == 422 and refused.json()["field"] == "compute.kind"
+
+
 def test_pictures_on_the_live_connection(server, from_above):
     with LiveClient(server, "church") as live:
         live.hello()
@@ -215,3 +245,20 @@ def test_a_damaged_scan_is_named(server):
 def test_one_scan_has_no_parts(server):
     model = server.import_model(folded_grid(), "alone.ply", parts="true")
     assert "parts" not in model
+
+
+def test_real_scans_are_the_same_alone_and_as_parts(server):
+    files = {}
+    for name in SCANS:
+        if not (DATA / name).exists():
+            missing(f"no scan at {DATA / name}")
+        files[f"scans/{name}"] = (DATA / name).read_bytes()
+    together = server.import_model(zipped(files), "scans.zip", parts="true", unit="mm", up="z")
+    parts = {part["name"]: part for part in together["parts"]}
+    for name in SCANS:
+        alone = server.import_model((DATA / name).read_bytes(), name, unit="mm", up="z")
+        part = parts[name.rsplit(".", 1)[0]]
+        assert part["triangles"] == alone["triangles"]
+        assert abs(part["area_m2"] / alone["area_m2"] - 1) < 1e-9
+        assert part["bounds"] == alone["bounds"]
+    assert together["triangles"] == sum(part["triangles"] for part in parts.values())

@@ -1264,6 +1264,10 @@ export const laterTexts = {
         title: "Rauheit",
         lead: "Abstand der Oberfläche zu ihrer Ausgleichsebene: trennt verwitterte von frischen und glatte von bearbeiteten Flächen.",
       },
+      part: {
+        title: "Teil des Modells",
+        lead: "Eine Klasse für jeden Scan, aus dem das Modell importiert wurde, für Mengen und Bedingungen nach Teilen.",
+      },
       ambient_occlusion: {
         title: "Umgebungsverdeckung",
         lead: "Anteil der Umgebung, der von jeder Stelle aus sichtbar ist: 1 bei freier Sicht, 0 in tiefen Höhlungen.",

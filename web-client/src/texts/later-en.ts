@@ -1246,6 +1246,10 @@ export const laterTexts = {
         title: "Roughness",
         lead: "Distance of the surface from its best-fit plane. Separates worn from fresh surfaces, and smooth from tooled surfaces.",
       },
+      part: {
+        title: "Part of the model",
+        lead: "A class for each scan from which the model was imported, for quantities and conditions by part.",
+      },
       ambient_occlusion: {
         title: "Ambient occlusion",
         lead: "How much of the surroundings is visible from each point: 1 where nothing blocks the view, 0 in deep cavities.",

@@ -1256,6 +1256,10 @@ export const laterTexts = {
         title: "Rugosidad",
         lead: "Distancia de la superficie a su plano de mejor ajuste: distingue lo desgastado de lo fresco, lo liso de lo labrado.",
       },
+      part: {
+        title: "Parte del modelo",
+        lead: "Una clase para cada escaneo del que se importó el modelo, para cantidades y condiciones por partes.",
+      },
       ambient_occlusion: {
         title: "Oclusión ambiental",
         lead: "Qué parte del entorno se ve desde cada punto: 1 si nada la tapa, 0 en cavidades profundas.",

@@ -1199,6 +1199,7 @@ std::string_view name(ShapeRecipeKind value) {
     case ShapeRecipeKind::sun_energy: return "sun_energy";
     case ShapeRecipeKind::driving_rain: return "driving_rain";
     case ShapeRecipeKind::vertex_property: return "vertex_property";
+    case ShapeRecipeKind::part: return "part";
     case ShapeRecipeKind::lightness: return "lightness";
   }
   return {};
@@ -1224,6 +1225,7 @@ void read(const nlohmann::json& json, ShapeRecipeKind& value) {
   if (text == "sun_energy") value = ShapeRecipeKind::sun_energy;
   if (text == "driving_rain") value = ShapeRecipeKind::driving_rain;
   if (text == "vertex_property") value = ShapeRecipeKind::vertex_property;
+  if (text == "part") value = ShapeRecipeKind::part;
   if (text == "lightness") value = ShapeRecipeKind::lightness;
 }
 

@@ -3000,21 +3000,22 @@ nlohmann::json to_json(const TemplateUse& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateUse> = Schema::TemplateUse;
 
-enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, change, level_of_detection, significant_change, sun_hours, sun_energy, driving_rain, vertex_property, lightness };
+enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, change, level_of_detection, significant_change, sun_hours, sun_energy, driving_rain, vertex_property, part, lightness };
 std::string_view name(ShapeRecipeKind value);
 void read(const nlohmann::json& json, ShapeRecipeKind& value);
 nlohmann::json to_json(const ShapeRecipeKind& value);
 
 // Values that are computed from the shape of the model. The response is a job. The layer exists when the job is finished. If unit, palette or description are absent, the server derives them from the recipe.
 struct ShapeRecipe {
-  // lightness: L* of CIELAB, from 0 for black to 100 for white, of the colors of the scan or of a
-  // surface image; sun_hours: the hours of direct sun in a period of the year; sun_energy: its
-  // energy under a clear sky, in kWh/m²; both with the shadows of the model itself; driving_rain:
-  // the rain that meets the surface, in l/m² (equal to mm), with the wind by the free-field formula
-  // of ISO 15927-3 and with the shelter of the model itself; change: the signed M3C2 distance
-  // (Lague, Brodu and Leroux 2013) since the other model, in mm; level_of_detection: the smallest
-  // change that noise and alignment cannot explain, at 95 %, in mm; significant_change: 0 where the
-  // change is within the level of detection, 1 for a gain, 2 for a loss of material.
+  // part: the number of the part, for models with `parts`; lightness: L* of CIELAB, from 0 for
+  // black to 100 for white, of the colors of the scan or of a surface image; sun_hours: the hours
+  // of direct sun in a period of the year; sun_energy: its energy under a clear sky, in kWh/m²;
+  // both with the shadows of the model itself; driving_rain: the rain that meets the surface, in
+  // l/m² (equal to mm), with the wind by the free-field formula of ISO 15927-3 and with the shelter
+  // of the model itself; change: the signed M3C2 distance (Lague, Brodu and Leroux 2013) since the
+  // other model, in mm; level_of_detection: the smallest change that noise and alignment cannot
+  // explain, at 95 %, in mm; significant_change: 0 where the change is within the level of
+  // detection, 1 for a gain, 2 for a loss of material.
   ShapeRecipeKind kind{};
   // For curvature and roughness, the radius of the neighborhood. Default: the length of four edges
   // of the mesh.

@@ -7,6 +7,7 @@
 #include "core/text/ascii.h"
 #include "domain/layers/palette.h"
 #include "domain/scene/model.h"
+#include "jobs/shape_recipe.h"
 #include "net/api/route_help.h"
 
 namespace strata::net {
@@ -77,7 +78,8 @@ Result<Layer> new_layer(const protocol::LayerCreate& body, const Model& model,
   const bool computes_numbers =
       body.expression
           ? !is_condition
-          : body.compute && body.compute->kind != protocol::ShapeRecipeKind::significant_change;
+          : body.compute &&
+                !jobs::has_classes(*jobs::parse_shape_kind(protocol::name(body.compute->kind)));
   const Layer* source =
       formula && formula->chooses_value() ? source_of_values(*formula, others) : nullptr;
   layer.type = body.type.value_or(source             ? source->type

@@ -171,6 +171,7 @@ export class StrataShapeFields extends LitElement {
 
   private isPossible(kind: ShapeKind): boolean {
     if (kind === "vertex_property") return this._properties.length > 0;
+    if (kind === "part") return Boolean(this.session.model?.parts);
     return !shapeKind(kind).takes.includes("model") || this._models.length > 0;
   }
 

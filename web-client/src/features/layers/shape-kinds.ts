@@ -68,6 +68,7 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
       { kind: "height", ...words.height, takes: ["absolute"] },
       { kind: "slope", ...words.slope, takes: [] },
       { kind: "azimuth", ...words.azimuth, takes: [] },
+      { kind: "part", ...words.part, takes: [] },
     ],
   },
   {
