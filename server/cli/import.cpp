@@ -63,13 +63,31 @@ Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
   return scans;
 }
 
+// Names the files by their paths from the innermost folder that contains all of them, with that
+// folder. The server stores the names, and outer folders are private.
+void name_from_common_folder(std::vector<jobs::ImportFile>& files) {
+  namespace fs = std::filesystem;
+  const auto absolute = [](const jobs::ImportFile& file) {
+    return fs::absolute(file.path).lexically_normal();
+  };
+  const auto contains = [](const fs::path& folder, const fs::path& file) {
+    return std::ranges::mismatch(folder, file).in1 == folder.end();
+  };
+  if (files.empty()) return;
+  fs::path common = absolute(files.front()).parent_path();
+  for (const auto& file : files)
+    while (!contains(common, absolute(file))) common = common.parent_path();
+  for (auto& file : files)
+    file.filename = absolute(file).lexically_relative(common.parent_path()).generic_string();
+}
+
 // Returns all files for one model whose parts the scans are. A folder stands for the files in it.
 Result<std::vector<std::vector<jobs::ImportFile>>> all_scans(
     const std::vector<std::string>& paths) {
   std::vector<jobs::ImportFile> files;
   const auto add = [&](const std::filesystem::path& path) {
     if (std::ranges::find(files, path, &jobs::ImportFile::path) == files.end())
-      files.push_back({path.generic_string(), path});
+      files.push_back({"", path});
   };
   for (const std::filesystem::path path : paths) {
     if (std::filesystem::is_directory(path)) {
@@ -87,6 +105,7 @@ Result<std::vector<std::vector<jobs::ImportFile>>> all_scans(
       add(path);
     }
   }
+  name_from_common_folder(files);
   return std::vector<std::vector<jobs::ImportFile>>{std::move(files)};
 }
 

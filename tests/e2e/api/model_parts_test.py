@@ -1,7 +1,10 @@
 """Models of several scans: the tree of their parts, hidden parts in pictures, picks and strokes,
 the stored files, and what is refused."""
 import io
+import json
+import os
 import pathlib
+import subprocess
 import uuid
 import zipfile
 
@@ -245,6 +248,28 @@ def test_a_damaged_scan_is_named(server):
 def test_one_scan_has_no_parts(server):
     model = server.import_model(folded_grid(), "alone.ply", parts="true")
     assert "parts" not in model
+
+
+def test_the_command_imports_a_folder(server, model, tmp_path):
+    for name, content in FILES.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    (tmp_path / "Church" / "notes.txt").write_text("not a scan")
+    for named in (["Church"], [str(tmp_path / name) for name in FILES]):
+        done = subprocess.run(
+            [os.environ["STRATA_BINARY"], "import", "--parts", *named, "--unit", "m", "--up", "z"]
+            + ["--server", server.url, "--token", server.token],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        made = json.loads(done.stdout)
+        assert made["parts"] == model["parts"] and made["name"] == "Church"
+        # The folders of this machine are private.
+        assert sorted(file["name"] for file in made["source_files"]) == sorted(FILES)
 
 
 def test_real_scans_are_the_same_alone_and_as_parts(server):

@@ -90,6 +90,8 @@ export class OrbitCamera {
   section: Plane[] = [];
   /** The numbers of the parts of the model that the camera does not show. */
   hiddenParts: readonly number[] = [];
+  /** The boxes of the parts of the model, by number. */
+  partBoxes: readonly Bounds[] = [];
 
   private _bounds: Bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
   private _up: UpAxis = "z";
@@ -377,9 +379,23 @@ export class OrbitCamera {
     return at && at.x >= 0 && at.y >= 0 && at.x <= this.width && at.y <= this.height ? at : null;
   }
 
-  /** Whether the planes of the section cut the world point away. */
+  /** Whether the planes of the section cut the world point away, or it is on hidden parts only. */
   cutsAway(point: Vec3): boolean {
-    return this.section.some(([a, b, c, d]) => dot([a, b, c], point) + d < 0);
+    return (
+      this.section.some(([a, b, c, d]) => dot([a, b, c], point) + d < 0) || this.isOnHidden(point)
+    );
+  }
+
+  /** A point in the boxes of several parts may be on each of them. */
+  private isOnHidden(point: Vec3): boolean {
+    if (this.hiddenParts.length === 0) return false;
+    const margin = boundingRadius(this._bounds) * 1e-3;
+    const parts = this.partBoxes.flatMap(({ min, max }, number) =>
+      point.every((at, axis) => at >= min[axis]! - margin && at <= max[axis]! + margin)
+        ? [number]
+        : [],
+    );
+    return parts.length > 0 && parts.every((number) => this.hiddenParts.includes(number));
   }
 
   private depthRange(): { near: number; far: number } {

@@ -72,6 +72,7 @@ export class ViewControl {
   setModel(model: Model, turned: boolean): void {
     this._hasModel = true;
     this.camera.setModel(model.bounds, model.up);
+    this.camera.partBoxes = (model.parts ?? []).map(({ bounds }) => bounds);
     this.fitAtFirst();
     if (turned) this.moved(false);
   }

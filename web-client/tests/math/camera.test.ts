@@ -182,3 +182,28 @@ describe("movement", () => {
     expect(camera.unitPerPixel()).toBeCloseTo(perspective, 12);
   });
 });
+
+describe("hidden parts", () => {
+  const camera = new OrbitCamera();
+  camera.setModel({ min: [0, 0, 0], max: [10, 10, 10] }, "z");
+  camera.partBoxes = [
+    { min: [0, 0, 0], max: [4, 10, 10] },
+    { min: [3, 0, 0], max: [10, 10, 10] },
+  ];
+
+  it("are in the message for the server only if there are any", () => {
+    camera.hiddenParts = [];
+    expect(camera.message()).not.toHaveProperty("hidden_parts");
+    camera.hiddenParts = [1];
+    expect(camera.message().hidden_parts).toEqual([1]);
+  });
+  it("hide the points that can only be on them", () => {
+    camera.hiddenParts = [1];
+    expect(camera.cutsAway([8, 5, 5])).toBe(true);
+    expect(camera.cutsAway([3.5, 5, 5])).toBe(false); // in both boxes
+    expect(camera.cutsAway([1, 5, 5])).toBe(false);
+    expect(camera.cutsAway([20, 5, 5])).toBe(false); // in no box
+    camera.hiddenParts = [];
+    expect(camera.cutsAway([8, 5, 5])).toBe(false);
+  });
+});
