@@ -5,6 +5,7 @@ import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
+import { findings } from "../support/js/accessible.mjs";
 import { Browser } from "../support/js/browser.mjs";
 import { attach_log, test } from "../support/js/cases.mjs";
 import { StrataServer, wait_for } from "../support/js/strata-server.mjs";
@@ -90,6 +91,7 @@ test("several files become several models, or one with parts", async () => {
   await dialog.getByLabel(words.scans.as_parts(5)).check();
   assert.equal(await dialog.getByLabel(words.scans.name).inputValue(), "North wall");
   await dialog.getByLabel(words.scans.name).fill("Walls");
+  assert.deepEqual(await findings(desk.page), []);
   await shot(desk, "question");
   await dialog.getByRole("button", { name: words.scans.start }).click();
   await desk.page.waitForURL(/\/models\//);
@@ -123,6 +125,7 @@ test("the tree shows and hides parts and folders", async () => {
   await desk.page.keyboard.press("Escape"); // the question about the size
   await desk.page.getByRole("button", { name: words.view.model_parts, exact: true }).click();
   await tree_of(desk).getByText(shown(5)).waitFor();
+  assert.deepEqual(await findings(desk.page), []);
   await shot(desk, "tree");
   await tree_of(desk).getByLabel("Tower", { exact: true }).uncheck();
   await tree_of(desk).getByText(shown(3)).waitFor();
@@ -150,6 +153,7 @@ test("the phone shows the same tree", async () => {
   await phone.page.keyboard.press("Escape");
   await phone.page.getByRole("button", { name: words.view.model_parts, exact: true }).click();
   await tree_of(phone).getByText(shown(5)).waitFor();
+  assert.deepEqual(await findings(phone.page), []);
   await shot(phone, "phone");
   for (const who of [desk, phone]) who.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);

@@ -50,7 +50,7 @@ export const partsIn = (folder: PartFolder): NumberedPart[] => [
   ...folder.folders.flatMap(partsIn),
 ];
 
-/** Returns the box of some parts, or null if there is none. */
+/** Returns the box of some parts, or null without parts. */
 export function boundsOf(parts: readonly ModelPart[]): ModelPart["bounds"] | null {
   if (parts.length === 0) return null;
   const of = (pick: "min" | "max"): [number, number, number] => {
