@@ -4,13 +4,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { live } from "lit/directives/live.js";
-import {
-  boundsOf,
-  partsIn,
-  partTree,
-  type NumberedPart,
-  type PartFolder,
-} from "../../domain/model-parts";
+import { boundsOf, partsIn, partTree, type NumberedPart, type PartFolder } from "./model-parts";
 import { formatArea } from "../../domain/measure";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
@@ -24,7 +18,7 @@ export class StrataPartTree extends LitElement {
 
   constructor() {
     super();
-    followSession(this, "appearance");
+    followSession(this, "appearance", "view");
   }
 
   static override styles = [

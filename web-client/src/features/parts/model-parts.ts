@@ -1,7 +1,7 @@
 // The tree of the parts of a model, from their folders.
 
-import type { ModelPart } from "../core/protocol.gen";
-import { pageLocale } from "../core/locale";
+import type { ModelPart } from "../../core/protocol.gen";
+import { pageLocale } from "../../core/locale";
 
 /** A part with its number, which is its position in the list of the model. */
 export interface NumberedPart extends ModelPart {

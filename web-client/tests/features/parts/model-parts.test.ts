@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
-import type { ModelPart } from "../../src/core/protocol.gen";
-import { boundsOf, partsIn, partTree } from "../../src/domain/model-parts";
+import type { ModelPart } from "../../../src/core/protocol.gen";
+import { boundsOf, partsIn, partTree } from "../../../src/features/parts/model-parts";
 
 const part = (name: string, folder = "", x = 0): ModelPart => ({
   name,
