@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/commands.h"
 #include "cli/open_database.h"
@@ -81,30 +82,49 @@ void name_from_common_folder(std::vector<jobs::ImportFile>& files) {
     file.filename = absolute(file).lexically_relative(common.parent_path()).generic_string();
 }
 
-// Returns all files for one model whose parts the scans are. A folder stands for the files in it.
+// Adds the scans in a folder and in its folders, with the files that they use.
+Result<void> add_folder(const std::filesystem::path& folder,
+                        std::vector<std::filesystem::path>& paths) {
+  std::error_code error;
+  std::vector<std::filesystem::path> found;
+  auto entry = std::filesystem::recursive_directory_iterator(folder, error);
+  for (; !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error))
+    if (entry->is_regular_file(error) && mesh::is_scan_file(entry->path().filename().string()))
+      found.push_back(entry->path());
+  if (error)
+    return fail(ErrorCode::malformed, "Folder cannot be read",
+                folder.string() + ": " + error.message());
+  std::ranges::sort(found);
+  paths.insert(paths.end(), found.begin(), found.end());
+  return {};
+}
+
+// Returns all files for one model whose parts the scans are, the scans first. A folder stands for
+// the files in it.
 Result<std::vector<std::vector<jobs::ImportFile>>> all_scans(
-    const std::vector<std::string>& paths) {
-  std::vector<jobs::ImportFile> files;
-  const auto add = [&](const std::filesystem::path& path) {
-    if (std::ranges::find(files, path, &jobs::ImportFile::path) == files.end())
-      files.push_back({"", path});
+    const std::vector<std::string>& named) {
+  namespace fs = std::filesystem;
+  const auto is_scan = [](const fs::path& path) {
+    return mesh::is_mesh(mesh::input_kind(path.filename().string()));
   };
-  for (const std::filesystem::path path : paths) {
-    if (std::filesystem::is_directory(path)) {
-      std::vector<std::filesystem::path> found;
-      for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
-        if (entry.is_regular_file() && mesh::is_scan_file(entry.path().filename().string()))
-          found.push_back(entry.path());
-      std::ranges::sort(found);
-      for (const auto& file : found) add(file);
-    } else if (!std::filesystem::is_regular_file(path)) {
+  std::vector<fs::path> paths;
+  for (const fs::path path : named) {
+    std::error_code unknown;
+    if (fs::is_directory(path, unknown)) {
+      STRATA_TRY(add_folder(path, paths));
+    } else if (!fs::is_regular_file(path, unknown)) {
       return fail(ErrorCode::malformed, "No such file", path.string());
-    } else if (mesh::is_mesh(mesh::input_kind(path.filename().string()))) {
-      for (const auto& file : jobs::with_companions(path)) add(file.path);
+    } else if (is_scan(path)) {
+      for (const auto& file : jobs::with_companions(path)) paths.push_back(file.path);
     } else {
-      add(path);
+      paths.push_back(path);
     }
   }
+  std::ranges::stable_partition(paths, is_scan);
+  std::vector<jobs::ImportFile> files;
+  std::set<fs::path> taken;
+  for (const fs::path& path : paths)
+    if (taken.insert(fs::absolute(path).lexically_normal()).second) files.push_back({"", path});
   name_from_common_folder(files);
   return std::vector<std::vector<jobs::ImportFile>>{std::move(files)};
 }

@@ -44,6 +44,13 @@ constexpr double kDefaultRainPerHour = 1;  // mm
 constexpr int kDefaultRays = 64;
 constexpr int kMinRays = 16, kMaxRays = 1024;
 
+// Returns the last bytes of the text, at most `most`, without a partial character.
+std::string end_of(const std::string& text, std::size_t most) {
+  std::size_t cut = text.size() - std::min(text.size(), most);
+  while (!is_utf8(std::string_view(text).substr(cut))) ++cut;
+  return text.substr(cut);
+}
+
 bool takes_radius(ShapeKind kind) {
   return kind >= ShapeKind::mean_curvature && kind <= ShapeKind::roughness;
 }
@@ -523,8 +530,9 @@ Palette palette_of(const std::vector<ModelPart>& parts) {
   for (std::uint32_t number = 0; number < parts.size(); ++number) {
     const ModelPart& part = parts[number];
     const std::string label = part.folder.empty() ? part.name : part.folder + "/" + part.name;
-    palette.points.push_back({static_cast<double>(number), generated_color(number + 1),
-                              std::string(first_bytes(label, kMaxLabel))});
+    // Parts in one deep folder differ at the end.
+    palette.points.push_back(
+        {static_cast<double>(number), generated_color(number + 1), end_of(label, kMaxLabel)});
   }
   return palette;
 }

@@ -56,6 +56,8 @@ class ModelImport {
     auto bytes = STRATA_TRY(bytes_of_file(path));
     const auto geometry = mesh::decode_geometry(bytes);
     if (!geometry) return refused(path, geometry.error().detail);
+    if (geometry->part_ends.size() != geometry_.part_ends.size())
+      return refused(path, "It does not have the parts of this model.");
     return bytes;
   }
 
@@ -66,7 +68,8 @@ class ModelImport {
     if (!geometry) return refused(path, geometry.error().detail);
     if (geometry->triangle_count() != fresh.model.triangles ||
         geometry->positions.size() != fresh.model.vertices ||
-        geometry->origin != fresh.model.origin)
+        geometry->origin != fresh.model.origin ||
+        geometry->part_ends.size() != fresh.model.parts.size())
       return refused(path, "It does not belong to this model.");
     geometry_ = std::move(*geometry);
     return {};

@@ -33,8 +33,8 @@ Result<std::vector<KeyFeature>> features_in(store::Store& store, const FigureReq
   const auto at = STRATA_TRY(table_sequence(store, request, layer));
   auto features = STRATA_TRY(
       store.records().features(*layer.table, request.role, request.room->model().id, at));
-  if (request.hidden_parts.any()) {
-    room::Surface& surface = request.room->surface();
+  room::Surface& surface = request.room->surface();
+  if (request.hidden_parts.any() && !surface.geometry()->part_ends.empty()) {
     const auto tree = surface.search_tree();
     query::find_parts(features, *surface.geometry(), *tree);
     std::erase_if(features, [&](const KeyFeature& feature) {

@@ -53,12 +53,23 @@ int common_parts(std::string_view a, std::string_view b) {
   return parts;
 }
 
-// Returns the number of folders that two paths have in common, counted from the first one.
-int common_folders(std::string_view a, std::string_view b) {
-  int folders = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()) && a[i] == b[i]; ++i)
-    folders += a[i] == '/' || a[i] == '\\' ? 1 : 0;
+// Returns the folders of a file's path.
+std::vector<std::string> folders_of(std::string_view name) {
+  std::vector<std::string> folders;
+  const std::string path = mended_utf8(name);
+  std::size_t begin = 0;
+  for (std::size_t slash; (slash = path.find_first_of("/\\", begin)) != std::string::npos;
+       begin = slash + 1)
+    folders.push_back(path.substr(begin, slash - begin));
   return folders;
+}
+
+// Returns the number of folders between two folders, or nothing if neither contains the other.
+std::optional<std::size_t> steps_between(std::span<const std::string> a,
+                                         std::span<const std::string> b) {
+  const auto [end_a, end_b] = std::ranges::mismatch(a, b);
+  if (end_a != a.end() && end_b != b.end()) return std::nullopt;
+  return static_cast<std::size_t>((a.end() - end_a) + (b.end() - end_b));
 }
 
 std::vector<std::string> names_of(std::span<const InputFiles::Entry> entries) {
@@ -103,6 +114,12 @@ Result<std::vector<std::size_t>> pick_scans(std::span<const std::string> filenam
     if (kind == InputKind::zip) archives.push_back(i);
   }
   const auto& scans = meshes.empty() ? archives : meshes;
+  if (parts && !meshes.empty() && !archives.empty())
+    return fail(ErrorCode::invalid, "Scans and archives together",
+                "The parts of a model can be several scans or one zip file, but not both: " +
+                    listed(filenames, meshes) + ", " + listed(filenames, archives) +
+                    ". Unpack the zip file, or put the scans into it.",
+                "file");
   if (scans.size() == 1 || (parts && scans.size() <= kMaxModelParts && !meshes.empty()))
     return scans;
   if (parts && scans.size() > kMaxModelParts)
@@ -116,7 +133,7 @@ Result<std::vector<std::size_t>> pick_scans(std::span<const std::string> filenam
                 "One import creates one model, but the upload contains several scans: " +
                     listed(filenames, scans) + ". Import them one by one" +
                     (meshes.empty() ? "." : ", or with `parts=true` as the parts of one model."),
-                kPartsField);
+                meshes.empty() ? "file" : kPartsField);
   if (filenames.empty())
     return fail(ErrorCode::invalid, "No file",
                 "The upload contains no file to import. Please " + std::string(kTaken) + ".",
@@ -177,21 +194,37 @@ Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesys
 
 const InputFiles::Entry* InputFiles::find(std::string_view reference) const {
   const Entry* best = nullptr;
-  int most = 0, most_folders = 0;
-  const std::string scan_name = mended_utf8(scan().name);
+  int most = 0;
+  std::size_t fewest = 0;
   // The name of a referenced file may have been damaged by a wrong encoding.
   const std::string target = mended_utf8(reference);
+  const auto scan_folders = folders_of(scan().name);
   for (const Entry& entry : entries_) {
-    const std::string name = mended_utf8(entry.name);
-    const int common = common_parts(name, target);
+    const int common = common_parts(mended_utf8(entry.name), target);
     if (common == 0 || common < most) continue;
-    const int folders = common_folders(name, scan_name);
-    if (common == most && folders <= most_folders) continue;
+    const auto steps = scans_.size() == 1 ? std::optional<std::size_t>(0)
+                                          : steps_between(folders_of(entry.name), scan_folders);
+    if (!steps || (common == most && *steps >= fewest)) continue;
     most = common;
-    most_folders = folders;
+    fewest = *steps;
     best = &entry;
   }
   return best;
+}
+
+std::vector<const InputFiles::Entry*> InputFiles::own() const {
+  const auto scan_folders = folders_of(scan().name);
+  const auto is_below = [&](const Entry& entry) {
+    const auto folders = folders_of(entry.name);
+    return std::ranges::mismatch(scan_folders, folders).in1 == scan_folders.end();
+  };
+  std::vector<const Entry*> found;
+  for (const Entry& entry : entries_)
+    if (scans_.size() == 1 || is_below(entry)) found.push_back(&entry);
+  const bool shares_folder = scans_.size() > 1 && std::ranges::count_if(scans_, [&](std::size_t i) {
+                                                    return is_below(entries_[i]);
+                                                  }) > 1;
+  return shares_folder ? std::vector<const Entry*>() : found;
 }
 
 }  // namespace strata::mesh

@@ -67,8 +67,11 @@ class InputFiles {
   // syntax of any system, possibly of the computer where the scan was made. The file with the
   // longest common end of the path is used, or of several such files the one that is nearest to the
   // scan. Folders and upper or lower case may differ, but the last component must match. Returns
-  // null if the file was not uploaded.
+  // null if the file was not uploaded, or if it can only belong to other scans.
   const Entry* find(std::string_view reference) const;
+  // Returns the files that no other scan can use: all of them for a single scan, otherwise those in
+  // the folder of the scan and its folders, if it contains no other scan.
+  std::vector<const Entry*> own() const;
 
  private:
   std::vector<Entry> entries_;

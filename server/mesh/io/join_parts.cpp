@@ -11,7 +11,10 @@
 namespace strata::mesh {
 namespace {
 
-constexpr std::size_t kMaxNameBytes = 200, kMaxFolderBytes = 1000;
+constexpr std::size_t kMaxNameBytes = 200, kMaxFolderBytes = 1000, kMaxRepairs = 500;
+// The largest distance between two scans, in sums of their diagonals. Farther apart, vertices would
+// lose details of the scans, because they are floats.
+constexpr double kMaxDistance = 10'000;
 constexpr std::uint32_t kStoneGrey = 0xffcfd3d6u, kWhite = 0xffffffffu;
 
 // The folders and the name of a file.
@@ -105,6 +108,11 @@ std::uint32_t packed(const glm::vec4& color) {
 // Gives a mesh vertex colors that keep its appearance if `tints` is the joined mesh's
 // `colors_tint_materials`.
 void give_colors(TriangleMesh& mesh, bool tints) {
+  // Alone, such a mesh shows only the colors of its vertices.
+  if (mesh.textures.empty() && !mesh.vertex_colors.empty() && !mesh.colors_tint_materials) {
+    mesh.materials.clear();
+    mesh.triangle_materials.clear();
+  }
   if (!mesh.textures.empty()) {
     if (mesh.vertex_colors.empty() || (tints && !mesh.colors_tint_materials))
       mesh.vertex_colors.assign(mesh.positions.size(), kWhite);
@@ -155,6 +163,7 @@ void append(TriangleMesh mesh, TriangleMesh& all, const Members& has) {
 void measure(const TriangleMesh& mesh, ModelPart& part) {
   part.triangles = mesh.triangle_count();
   part.area = surface_area(mesh);
+  if (mesh.positions.empty()) return;
   part.bounds_min = glm::dvec3(std::numeric_limits<double>::infinity());
   part.bounds_max = -part.bounds_min;
   for (const glm::dvec3& position : mesh.positions) {
@@ -163,8 +172,10 @@ void measure(const TriangleMesh& mesh, ModelPart& part) {
   }
 }
 
+// Each scan can have many notes, such as one for each missing texture.
 void add_repairs(const std::vector<Repair>& from, std::vector<Repair>& to) {
-  for (const Repair& repair : from) {
+  for (Repair repair : from) {
+    if (to.size() >= kMaxRepairs) repair.what = "more changes of other kinds";
     const auto same = std::ranges::find(to, repair.what, &Repair::what);
     if (same == to.end())
       to.push_back(repair);
@@ -182,6 +193,24 @@ void add_facts(const SurfaceFromPoints& from, double scale, std::optional<Surfac
        {&SurfaceFromPoints::point_spacing, &SurfaceFromPoints::cell, &SurfaceFromPoints::gap,
         &SurfaceFromPoints::distance_median, &SurfaceFromPoints::distance_95})
     (*to).*length = std::max((*to).*length, from.*length * scale);
+}
+
+// Refuses two scans that cannot have common coordinates.
+Result<void> check_distance(const std::vector<LoadedPart>& files,
+                            const std::vector<ModelPart>& parts, std::size_t a, std::size_t b) {
+  const auto center = [&](std::size_t i) {
+    return (parts[i].bounds_min + parts[i].bounds_max) / 2.0;
+  };
+  const auto size = [&](std::size_t i) {
+    return glm::distance(parts[i].bounds_min, parts[i].bounds_max);
+  };
+  if (glm::distance(center(a), center(b)) <= kMaxDistance * (size(a) + size(b))) return {};
+  return fail(ErrorCode::invalid, "Scans do not fit together",
+              "The parts of a model must have common coordinates, but " +
+                  mended_utf8(files[a].filename) + " and " + mended_utf8(files[b].filename) +
+                  " are more than 10 000 times their size apart. Export both in one coordinate "
+                  "system, or import the scans one by one.",
+              "file");
 }
 
 Result<void> check_size(const std::vector<LoadedPart>& files) {
@@ -244,6 +273,7 @@ Result<LoadedMesh> join_parts(std::vector<LoadedPart> files) {
         joined.comments.push_back(comment);
     if (loaded.from_points) add_facts(*loaded.from_points, scale, joined.from_points);
     joined.parts.push_back(parts[i]);
+    if (i != order.front()) STRATA_TRY(check_distance(files, parts, order.front(), i));
   }
   return joined;
 }

@@ -22,8 +22,9 @@ struct LoadedPart {
 // vertices and materials occur together, both are kept where one mesh can express them: textures
 // hide the vertex colors of their part.
 //
-// Fails with `invalid` if files state different up directions or coordinate systems, and if the
-// scans have too many triangles or materials together.
+// Fails with `invalid` if files state different up directions or coordinate systems, if scans are
+// so far apart that they cannot have common coordinates, and if the scans have too many triangles
+// or materials together.
 Result<LoadedMesh> join_parts(std::vector<LoadedPart> parts);
 
 }  // namespace strata::mesh

@@ -100,8 +100,8 @@ class ObjReader {
       }
     }
     if (!libraries_.empty()) return found;
-    for (const auto& entry : files_.all())
-      if (entry.name.ends_with(".mtl") || entry.name.ends_with(".MTL")) found.push_back(&entry);
+    for (const auto* entry : files_.own())
+      if (entry->name.ends_with(".mtl") || entry->name.ends_with(".MTL")) found.push_back(entry);
     if (found.size() > 1) found.clear();
     return found;
   }

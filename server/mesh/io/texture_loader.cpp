@@ -57,10 +57,10 @@ int TextureLoader::of_bytes(const std::string& name, std::vector<std::uint8_t> b
 void adopt_lone_picture(const InputFiles& files, TriangleMesh& mesh, std::vector<Repair>& repairs) {
   if (mesh.corner_uvs.empty() || !mesh.textures.empty() || mesh.materials.size() > 1) return;
   const InputFiles::Entry* lone = nullptr;
-  for (const auto& entry : files.all()) {
-    if (!picture_format(entry.bytes)) continue;
+  for (const InputFiles::Entry* entry : files.own()) {
+    if (!picture_format(entry->bytes)) continue;
     if (lone) return;
-    lone = &entry;
+    lone = entry;
   }
   if (!lone || !inspect_picture(lone->bytes)) return;
   mesh.textures.push_back({printable(lone->name), {lone->bytes.begin(), lone->bytes.end()}});

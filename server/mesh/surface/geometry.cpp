@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -222,10 +223,18 @@ std::vector<TriangleRange> visible_ranges(const Geometry& geometry, const PartSe
 
 std::vector<glm::dvec3> positions_without(const Geometry& geometry, const PartSet& hidden_parts) {
   std::vector<glm::dvec3> positions;
-  for (const auto [begin, end] : visible_ranges(geometry, hidden_parts))
-    for (std::size_t i = 3 * std::size_t{begin}; i < 3 * std::size_t{end}; ++i)
-      positions.push_back(
-          geometry.positions[geometry.vertices[geometry.indices[i]].position_index]);
+  // Positions are numbered by first use, so a range of parts has a range of them.
+  for (const auto [begin, end] : visible_ranges(geometry, hidden_parts)) {
+    std::uint32_t low = std::numeric_limits<std::uint32_t>::max(), high = 0;
+    for (std::size_t i = 3 * std::size_t{begin}; i < 3 * std::size_t{end}; ++i) {
+      const std::uint32_t position = geometry.vertices[geometry.indices[i]].position_index;
+      low = std::min(low, position);
+      high = std::max(high, position);
+    }
+    if (low <= high)
+      positions.insert(positions.end(), geometry.positions.begin() + low,
+                       geometry.positions.begin() + high + 1);
+  }
   return positions;
 }
 

@@ -59,7 +59,7 @@ struct TriangleRange {
 };
 // Returns the triangles of all parts except the hidden ones, as ranges that do not touch.
 std::vector<TriangleRange> visible_ranges(const Geometry& geometry, const PartSet& hidden_parts);
-// Returns the positions of all parts except the hidden ones, once for each corner of a triangle.
+// Returns the positions of all parts except the hidden ones.
 std::vector<glm::dvec3> positions_without(const Geometry& geometry, const PartSet& hidden_parts);
 
 // Computes the boxes from vertices and indices.

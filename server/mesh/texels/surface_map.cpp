@@ -24,7 +24,7 @@ TileMask SurfaceMap::surface_in_tile(TileAddress tile) const {
 }
 
 std::uint64_t SurfaceMap::texels_of_parts(std::uint32_t slot, const PartSet& parts) const {
-  if (part.empty()) return parts.test(0) ? ~std::uint64_t{0} : 0;
+  if (part.empty()) return 0;
   std::uint64_t texels = 0;
   for (std::size_t i = 0; i < 64; ++i)
     texels |= std::uint64_t{parts.test(part[std::size_t{slot} * 64 + i])} << i;

@@ -125,7 +125,7 @@ Step FrameJob::step(GpuScene& scene) {
     pixels_ = {};
     frame_.render_ms = busy_ms_;
     if (progress_.cleared && !scene.info().software && !mean_ && part_.width == 0)
-      scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
+      scene.detail_budget().drawn(progress_.triangles, ms_since(mesh_begin_));
     if (samples_begin_)
       scene.detail_budget().smoothed(
           frame_.pixels.size() / 4 * static_cast<std::size_t>(samples_ - 1),
@@ -306,7 +306,7 @@ void FrameJob::make_smooth(GpuScene& scene, const View& view) {
   mean_ = std::move(*mean);
   samples_ = samples;
   level_ = view.key.level;
-  own_triangles_ = progress_.triangles();
+  own_triangles_ = progress_.triangles;
 }
 
 bool FrameJob::has_layers(GpuScene& scene) const {
@@ -408,7 +408,7 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   view.depth->complete = true;
   // A software renderer draws during the calls. A GPU finishes later, when the frame can be read.
   if (scene.info().software && &view != sample_view_.get())
-    scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
+    scene.detail_budget().drawn(progress_.triangles, ms_since(mesh_begin_));
   return true;
 }
 
@@ -449,8 +449,10 @@ Result<void> FrameJob::test_features(GpuScene& scene, View& view) const {
   auto model = STRATA_TRY(scene.model(view.model));
   const mesh::Geometry& geometry = model->mesh().geometry();
   std::vector<shader::FeatureSegment> pieces;
+  Camera camera = camera_;
+  if (geometry.part_ends.empty()) camera.hidden_parts.reset();
   if (request.style.features)
-    pieces = project_features(*request.style.features, camera_, request.width, request.height,
+    pieces = project_features(*request.style.features, camera, request.width, request.height,
                               {view.key.level == 0 ? kFeatureReach_px : kFeatureReachOfCopies_px,
                                glm::distance(geometry.box_min, geometry.box_max)});
   const bool cut_open = !camera_.section.empty() && eye_is_cut_away(camera_);

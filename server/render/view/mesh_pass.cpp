@@ -139,6 +139,7 @@ Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view,
            clip_of_part(view.uniforms.clip_from_model, target), view.uniforms.eye))
     add_draws(cluster, ranges, commands);
   progress.clusters = commands.size();
+  for (const shader::DrawCommand& command : commands) progress.triangles += command.count / 3;
   progress.next_culling = next_culling(progress);
   progress.cleared = true;
   if (commands.empty()) return {};

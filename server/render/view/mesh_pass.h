@@ -51,12 +51,11 @@ struct MeshProgress {
   // One shader::DrawCommand per cluster, in drawing order. A cluster that contains triangles of
   // hidden and of visible parts has a command for each visible range.
   gl::Buffer commands;
-  std::size_t clusters = 0;  // number of commands
+  std::size_t clusters = 0;   // number of commands
+  std::size_t triangles = 0;  // of all commands
   std::size_t next_cluster = 0;
   std::size_t next_culling = 0;  // the remaining clusters are culled again before this cluster
   bool cleared = false;
-
-  std::size_t triangles() const { return clusters * mesh::Geometry::kTrianglesPerCluster; }
 };
 
 // Draws the depth or the g-buffer of a mesh. Draws near parts first and omits the clusters that

@@ -13,6 +13,7 @@ from support.cameras import camera_from
 from support.live_client import LAST_RECTANGLE, LiveClient
 from support.meshes import folded_grid, ply
 from support.missing import missing
+from support.pictures import png
 
 DATA = pathlib.Path(__file__).resolve().parents[4] / "shared" / "data"
 SCANS = (
@@ -270,6 +271,36 @@ def test_the_command_imports_a_folder(server, model, tmp_path):
         assert made["parts"] == model["parts"] and made["name"] == "Church"
         # The folders of this machine are private.
         assert sorted(file["name"] for file in made["source_files"]) == sorted(FILES)
+
+
+def test_the_command_sends_the_scans_before_their_pictures(server, tmp_path):
+    wall = "mtllib Wall.mtl\nv 0 0 0\nv 9 0 0\nv 9 9 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl a\nf 1/1 2/2 3/3\n"
+    for folder in ("A", "B"):
+        (tmp_path / "Site" / folder).mkdir(parents=True)
+        (tmp_path / "Site" / folder / "Wall.obj").write_text(wall)
+        (tmp_path / "Site" / folder / "Wall.mtl").write_text("newmtl a\nmap_Kd Photo.png\n")
+        (tmp_path / "Site" / folder / "Photo.png").write_bytes(png(8, 8, lambda x, y: (200, 9, 9)))
+    words = ["import", "--parts", "Site", "--server", server.url, "--token", server.token]
+    done = subprocess.run(
+        [os.environ["STRATA_BINARY"], *words],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    made = json.loads(done.stdout)
+    assert [part["folder"] for part in made["parts"]] == ["A", "B"]
+    assert not any("texture" in repair["what"] for repair in made["repairs"]), made["repairs"]
+
+
+def test_hidden_parts_of_a_model_without_parts_are_ignored(server):
+    alone = server.import_model(square(0), "plain.ply", unit="m", up="z", name="Plain")
+    path = f"/models/{alone['id']}/layers"
+    server.ok("POST", path, {"name": "Dust", "type": "u8", "resolution": 2048})
+    camera = {**camera_from(alone, (0, 0, 1), up=(0, 1, 0)), "hidden_parts": [0]}
+    server.ok("POST", path + "/dust/edits", stroke(camera))
+    assert server.get(path + "/dust/statistics").json()["texels"] > 0
 
 
 def test_real_scans_are_the_same_alone_and_as_parts(server):

@@ -107,9 +107,9 @@ test("several files become several models, or one with parts", async () => {
 test("an archive with several scans is offered as one model", async () => {
   await desk.page.goto(server.url);
   await choose(desk, [file("church.zip", zip_of(kFiles))]);
-  await desk.page.getByRole("button", { name: words.import.as_parts }).waitFor();
+  await desk.page.getByRole("button", { name: words.import.as_parts_named("church") }).waitFor();
   await shot(desk, "archive");
-  await desk.page.getByRole("button", { name: words.import.as_parts }).click();
+  await desk.page.getByRole("button", { name: words.import.as_parts_named("church") }).click();
   await desk.page.waitForURL(/\/models\//);
   await desk.drawn();
   church = await wait_for(
@@ -139,7 +139,7 @@ test("the tree shows and hides parts and folders", async () => {
     .click();
   await tree_of(desk).getByText(shown(2)).waitFor();
   await tree_of(desk)
-    .getByRole("button", { name: words.parts.fly("South wall") })
+    .getByRole("button", { name: words.parts.fly("Nave/South wall") })
     .click();
   await desk.drawn();
   await shot(desk, "nave");

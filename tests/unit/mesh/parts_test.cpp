@@ -130,6 +130,60 @@ TEST(Parts, use_the_pictures_of_their_own_folders) {
             "b/texture.png");
 }
 
+TEST(Parts, use_the_nearest_of_equally_named_pictures_and_none_of_other_scans) {
+  const std::string vertices =
+      "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+      "usemtl skin\nf 1/1 2/2 3/3\n";
+  const std::string material = "newmtl skin\nmap_Kd texture.png\n";
+  const auto loaded = load_texts({{"Tower/Inside/texture.png", png_of(0, 0, 200)},
+                                  {"Tower/Inside/a.obj", square(1, 9)},
+                                  {"Tower/a.obj", vertices},
+                                  {"Tower/a.mtl", material},
+                                  {"Tower/texture.png", png_of(200, 0, 0)},
+                                  {"Nave/a.obj", vertices},
+                                  {"Nave/a.mtl", material}},
+                                 kAsParts);
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  const auto& mesh = loaded->mesh;
+  ASSERT_EQ(mesh.textures.size(), 1u);
+  EXPECT_EQ(mesh.textures[0].name, "Tower/texture.png");
+  EXPECT_EQ(loaded->parts[0].folder, "Nave");
+  EXPECT_EQ(mesh.materials[mesh.triangle_materials[0]].texture, -1)
+      << "the picture of the tower does not belong to the nave";
+}
+
+TEST(Parts, take_the_only_picture_of_their_own_folder) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n";
+  const auto loaded = load_texts({{"a/a.obj", vertices},
+                                  {"a/photo.png", png_of(200, 0, 0)},
+                                  {"b/b.obj", vertices},
+                                  {"b/photo.png", png_of(0, 0, 200)},
+                                  {"c.obj", vertices}},
+                                 kAsParts);
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  ASSERT_EQ(loaded->mesh.textures.size(), 2u);
+  EXPECT_EQ(loaded->mesh.triangle_materials[0], mesh::kNoMaterial) << "c is outside both folders";
+  const auto flat = load_texts(
+      {{"a.obj", vertices}, {"b.obj", vertices}, {"photo.png", png_of(200, 0, 0)}}, kAsParts);
+  ASSERT_TRUE(flat) << flat.error().detail;
+  EXPECT_TRUE(flat->mesh.textures.empty()) << "it may belong to either scan";
+}
+
+TEST(Parts, with_colours_of_vertices_keep_them_beside_textures) {
+  const std::string colored =
+      "mtllib m.mtl\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\n"
+      "usemtl gray\nf 1 2 3\n";
+  const std::string textured = "v 0 0 5\nv 1 0 5\nv 1 1 5\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n";
+  const auto loaded = load_texts({{"a/a.obj", colored},
+                                  {"a/m.mtl", "newmtl gray\nKd 0.8 0.8 0.8\n"},
+                                  {"b/b.obj", textured},
+                                  {"b/b.png", png_of(0, 0, 200)}},
+                                 kAsParts);
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  EXPECT_EQ(loaded->mesh.triangle_materials[0], mesh::kNoMaterial);
+  EXPECT_EQ(loaded->mesh.vertex_colors[0], 0xff0000ffu);
+}
+
 TEST(Parts, keep_their_colours_without_those_of_others) {
   const std::string colored = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nf 1 2 3\n";
   const std::string material = "mtllib m.mtl\nv 0 0 5\nv 1 0 5\nv 1 1 5\nusemtl blue\nf 1 2 3\n";
@@ -175,6 +229,25 @@ TEST(Parts, that_do_not_fit_together_are_refused) {
   const auto up = mesh::join_parts(parts);
   ASSERT_FALSE(up);
   EXPECT_THAT(up.error().detail, HasSubstr("up direction"));
+}
+
+TEST(Parts, without_common_coordinates_are_refused) {
+  std::string far = square(1, 0);
+  for (std::size_t at = 0; (at = far.find("v ", at)) != std::string::npos; at += 2)
+    far.insert(at + 2, "5300000");
+  const auto loaded = load_texts({{"local.obj", square(1, 0)}, {"utm.obj", far}}, kAsParts);
+  ASSERT_FALSE(loaded);
+  EXPECT_THAT(loaded.error().detail, HasSubstr("local.obj and utm.obj"));
+}
+
+TEST(Parts, are_not_mixed_with_archives) {
+  const std::string zip = test::zip_of({{"b.obj", square(1, 5)}});
+  const auto mixed = load_texts({{"a.obj", square(1, 0)}, {"b.zip", zip}}, kAsParts);
+  ASSERT_FALSE(mixed);
+  EXPECT_EQ(mixed.error().field, "file");
+  const auto zips = load_texts({{"a.zip", zip}, {"b.zip", zip}}, kAsParts);
+  ASSERT_FALSE(zips);
+  EXPECT_NE(zips.error().field, "parts") << "the page would offer the same again";
 }
 
 TEST(Parts, are_made_only_if_requested) {
@@ -263,7 +336,7 @@ TEST(Parts, that_are_visible_form_ranges) {
   EXPECT_EQ(ranges("010"), (Ranges{{0, 32}, {64, 96}}));
   EXPECT_EQ(ranges("001"), (Ranges{{32, 96}}));
   EXPECT_EQ(ranges("111"), Ranges{});
-  EXPECT_EQ(mesh::positions_without(geometry, PartSet(std::string("110"))).size(), 96u);
+  EXPECT_EQ(mesh::positions_without(geometry, PartSet(std::string("110"))).size(), 25u);
 }
 
 TEST(Parts, that_are_hidden_let_rays_pass) {

@@ -349,6 +349,7 @@ export const texts = {
     cancel: (name) => `Import von ${name} abbrechen`,
     repeat: "Erneut versuchen",
     as_parts: "Als ein Modell importieren",
+    as_parts_named: (name: string) => `Als ein Modell importieren: ${name}`,
     repeat_named: (name) => `${name} erneut importieren`,
     dismiss: (name) => `Hinweis zu ${name} schließen`,
     open: "Öffnen",

@@ -321,6 +321,7 @@ export const texts = {
     cancel: (name: string) => `Cancel the import of ${name}`,
     repeat: "Try again",
     as_parts: "Import as one model",
+    as_parts_named: (name: string) => `Import as one model: ${name}`,
     repeat_named: (name: string) => `Import ${name} again`,
     dismiss: (name: string) => `Dismiss the note about ${name}`,
     open: "Open",

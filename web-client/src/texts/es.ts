@@ -342,6 +342,7 @@ export const texts = {
     cancel: (name) => `Cancelar la importación de ${name}`,
     repeat: "Reintentar",
     as_parts: "Importar como un modelo",
+    as_parts_named: (name: string) => `Importar como un modelo: ${name}`,
     repeat_named: (name) => `Importar ${name} de nuevo`,
     dismiss: (name) => `Descartar el aviso sobre ${name}`,
     open: "Abrir",

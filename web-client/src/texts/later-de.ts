@@ -1417,6 +1417,10 @@ export const laterTexts = {
     as_parts: (n: number) => `Als ein Modell mit ${n} Teilen`,
     as_parts_hint:
       "Für Scans eines Gebäudes oder Fundplatzes mit gemeinsamen Koordinaten. Ebenen bedecken alle Teile, und Teile lassen sich ausblenden. Aus Ordnern wird ein Baum.",
+    no_zips:
+      "Nicht mit Zip-Dateien: entpacken Sie diese, oder packen Sie alle Scans in eine Zip-Datei.",
+    too_many: (most: number) =>
+      `Nicht mit mehr als ${most} Dateien: packen Sie alle in eine Zip-Datei.`,
     name: "Name des Modells",
     more: (n: number) => `… und ${n} weitere`,
     start: "Importieren",

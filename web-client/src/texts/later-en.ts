@@ -1396,6 +1396,9 @@ export const laterTexts = {
     as_parts: (n: number) => `As one model with ${n} parts`,
     as_parts_hint:
       "For scans of one building or site with common coordinates. Layers cover all parts, and parts can be hidden. Folders become a tree.",
+    no_zips: "Not with zip files: unpack them, or put all scans into one zip file.",
+    too_many: (most: number) =>
+      `Not with more than ${most} files: put all of them into one zip file.`,
     name: "Name of the model",
     more: (n: number) => `… and ${n} more`,
     start: "Import",

@@ -1407,6 +1407,8 @@ export const laterTexts = {
     as_parts: (n: number) => `Como un modelo con ${n} partes`,
     as_parts_hint:
       "Para escaneos de un edificio o yacimiento con coordenadas comunes. Las capas cubren todas las partes, y las partes se pueden ocultar. Las carpetas forman un árbol.",
+    no_zips: "No con archivos zip: descomprímalos, o ponga todos los escaneos en un solo zip.",
+    too_many: (most: number) => `No con más de ${most} archivos: póngalos todos en un archivo zip.`,
     name: "Nombre del modelo",
     more: (n: number) => `… y ${n} más`,
     start: "Importar",

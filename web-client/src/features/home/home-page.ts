@@ -450,7 +450,7 @@ export class StrataHomePage extends LitElement {
           : html`${
               entry.mayRepeat || hasSeveralScans(entry)
                 ? html`<button
-                  aria-label=${entry.mayRepeat ? words.repeat_named(entry.name) : nothing}
+                  aria-label=${entry.mayRepeat ? words.repeat_named(entry.name) : words.as_parts_named(entry.name)}
                   @click=${() => this.dispatchEvent(new CustomEvent<ImportEntry>("repeat-import", { detail: entry }))}
                 >
                   ${entry.mayRepeat ? words.repeat : words.as_parts}

@@ -132,7 +132,7 @@ export function scanOfParts(scans: readonly Scan[], files: readonly DroppedFile[
 /** Returns whether the server restarted or was unreachable, so the file is not the cause. */
 const mayRepeat = (status: number): boolean => status === 0 || status >= 500 || status === 429;
 
-/** Whether the import was refused because an archive contains several scans. */
+/** Whether the import was refused because a zip file contains several scans. */
 export const hasSeveralScans = ({ problem }: ImportEntry): boolean => problem?.field === "parts";
 
 export class Imports {

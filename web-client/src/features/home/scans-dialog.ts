@@ -12,6 +12,15 @@ import { scanOfParts, type Scan } from "./imports";
 
 const words = texts.scans;
 const kMostListed = 8;
+const kMostFilesOfForm = 256; // of the contract of POST /models
+
+/** Returns why the server would refuse these files as the parts of one model, or "". */
+const partsRefusal = (files: readonly DroppedFile[]): string =>
+  files.some(({ path }) => /\.zip$/i.test(path))
+    ? words.no_zips
+    : files.length > kMostFilesOfForm
+      ? words.too_many(kMostFilesOfForm)
+      : "";
 
 @customElement("strata-scans-dialog")
 class StrataScansDialog extends LitElement {
@@ -20,7 +29,7 @@ class StrataScansDialog extends LitElement {
   answer: (scans: readonly Scan[]) => void = () => {};
 
   @state() private _asParts = false;
-  @state() private _name = "";
+  @state() private _name: string | null = null; // null: the proposed name
   @query("strata-dialog") private _dialog!: StrataDialog;
   private _answer: readonly Scan[] = [];
 
@@ -51,15 +60,12 @@ class StrataScansDialog extends LitElement {
     `,
   ];
 
-  override willUpdate(): void {
-    if (this._name === "") this._name = scanOfParts(this.scans, this.files).name;
-  }
-
   override render(): TemplateResult {
     const { scans } = this;
+    const refusal = partsRefusal(this.files);
     const choice = (asParts: boolean, label: string, hint: string): TemplateResult =>
       html`<label class="choice">
-        <input type="radio" name="as" .checked=${this._asParts === asParts} @change=${() => (this._asParts = asParts)} />
+        <input type="radio" name="as" ?disabled=${asParts && refusal !== ""} .checked=${this._asParts === asParts} @change=${() => (this._asParts = asParts)} />
         <span>${label}</span>
         <span class="hint">${hint}</span>
       </label>`;
@@ -70,7 +76,7 @@ class StrataScansDialog extends LitElement {
       </ul>
       <fieldset>
         ${choice(false, words.as_models(scans.length), words.as_models_hint)}
-        ${choice(true, words.as_parts(scans.length), words.as_parts_hint)}
+        ${choice(true, words.as_parts(scans.length), refusal || words.as_parts_hint)}
       </fieldset>
       ${
         this._asParts
@@ -79,7 +85,7 @@ class StrataScansDialog extends LitElement {
               <input
                 type="text"
                 maxlength="200"
-                .value=${this._name}
+                .value=${this._name ?? scanOfParts(scans, this.files).name}
                 @input=${(event: Event) => (this._name = (event.target as HTMLInputElement).value)}
               />
             </label>`
@@ -92,7 +98,7 @@ class StrataScansDialog extends LitElement {
   private start(): void {
     const parts = scanOfParts(this.scans, this.files);
     this._answer = this._asParts
-      ? [{ ...parts, name: this._name.trim() || parts.name }]
+      ? [{ ...parts, name: this._name?.trim() || parts.name }]
       : this.scans;
     this._dialog.close();
   }

@@ -44,6 +44,9 @@ function sort(folder: PartFolder): void {
   folder.folders.forEach(sort);
 }
 
+export const pathOf = ({ folder, name }: ModelPart): string =>
+  folder === "" ? name : `${folder}/${name}`;
+
 /** Returns the parts in a folder and in its folders. */
 export const partsIn = (folder: PartFolder): NumberedPart[] => [
   ...folder.parts,

@@ -4,7 +4,14 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { live } from "lit/directives/live.js";
-import { boundsOf, partsIn, partTree, type NumberedPart, type PartFolder } from "./model-parts";
+import {
+  boundsOf,
+  partsIn,
+  partTree,
+  pathOf,
+  type NumberedPart,
+  type PartFolder,
+} from "./model-parts";
 import { formatArea } from "../../domain/measure";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
@@ -85,7 +92,7 @@ export class StrataPartTree extends LitElement {
     const words = texts.parts;
     const { appearance, model } = this.session;
     const parts = model?.parts ?? [];
-    const shown = parts.length - appearance.hiddenParts.size;
+    const shown = parts.filter((_, number) => !appearance.hiddenParts.has(number)).length;
     return html`<div class="row">
         <span class="hint" role="status">${words.shown(shown, parts.length)}</span>
         ${
@@ -100,21 +107,28 @@ export class StrataPartTree extends LitElement {
   private list(folder: PartFolder): TemplateResult {
     return html`<ul>
       ${folder.folders.map(
-        (each) => html`<li>${this.row(each.name, partsIn(each), true)} ${this.list(each)}</li>`,
+        (each) =>
+          html`<li>${this.row(each.name, each.path, partsIn(each), true)} ${this.list(each)}</li>`,
       )}
-      ${folder.parts.map((part) => html`<li>${this.row(part.name, [part], false)}</li>`)}
+      ${folder.parts.map((part) => html`<li>${this.row(part.name, pathOf(part), [part], false)}</li>`)}
     </ul>`;
   }
 
-  private row(name: string, parts: readonly NumberedPart[], isFolder: boolean): TemplateResult {
+  /** Names in different folders may be equal, so labels have the path. */
+  private row(
+    name: string,
+    path: string,
+    parts: readonly NumberedPart[],
+    isFolder: boolean,
+  ): TemplateResult {
     const words = texts.parts;
     const { hiddenParts } = this.session.appearance;
     const hidden = parts.filter(({ number }) => hiddenParts.has(number)).length;
     const area = parts.reduce((sum, part) => sum + part.area_m2, 0);
-    const only = words.only(name);
-    const fly = words.fly(name);
+    const only = words.only(path);
+    const fly = words.fly(path);
     return html`<div class="part ${isFolder ? "folder" : ""} ${hidden === parts.length ? "hidden" : ""}">
-      <label title=${name}>
+      <label title=${path}>
         <input
           type="checkbox"
           .checked=${live(hidden === 0)}
