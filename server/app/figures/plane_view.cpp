@@ -45,11 +45,15 @@ Result<std::unique_ptr<PlaneView>> PlaneView::make(const Services& services, Byt
           ? figure::extent_of(geometry->positions, request.plane, request.section)
           : figure::extent_of(mesh::positions_without(*geometry, request.hidden_parts),
                               request.plane, request.section);
+  if (!extent && request.hidden_parts.any())
+    return fail(ErrorCode::invalid, "Nothing to draw",
+                "The hidden parts and the section remove the whole model from the figure. Show "
+                "more parts, or move the planes of the section.",
+                "camera.hidden_parts");
   if (!extent)
     return fail(ErrorCode::invalid, "Nothing to draw",
-                "The section and the hidden parts remove the whole model from the figure. Move "
-                "the planes of the section, or show more parts.",
-                "camera");
+                "The section removes the whole model from the figure. Move or remove its planes.",
+                "camera.section");
   return std::unique_ptr<PlaneView>(new PlaneView(services, budget, request, *extent));
 }
 

@@ -179,7 +179,7 @@ def test_a_view_and_a_figure_keep_hidden_parts(server, from_above):
     assert figures[0] == figures[1] != figures[2]
     hidden = {**camera, "hidden_parts": [0, 1, 2]}
     refused = server.post(M + "/figures", {"format": "png", "camera": hidden})
-    assert refused.status == 422 and refused.json()["field"] == "camera"
+    assert refused.status == 422 and refused.json()["field"] == "camera.hidden_parts"
     server.ok("POST", M + "/layers/damp/undo")
 
 

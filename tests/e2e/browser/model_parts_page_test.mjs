@@ -135,11 +135,11 @@ test("the tree shows and hides parts and folders", async () => {
   const tower = tree_of(desk).getByLabel("Tower", { exact: true });
   assert.equal(await tower.evaluate((box) => box.indeterminate), true);
   await tree_of(desk)
-    .getByRole("button", { name: words.parts.only("Nave") })
+    .getByRole("button", { name: words.parts.only("Nave"), exact: true })
     .click();
   await tree_of(desk).getByText(shown(2)).waitFor();
   await tree_of(desk)
-    .getByRole("button", { name: words.parts.fly("Nave/South wall") })
+    .getByRole("button", { name: words.parts.fly("Nave/South wall"), exact: true })
     .click();
   await desk.drawn();
   await shot(desk, "nave");
