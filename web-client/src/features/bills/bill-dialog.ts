@@ -67,6 +67,7 @@ export class StrataBillDialog extends LitElement {
   };
 
   private readonly mayClose = async (): Promise<boolean> => {
+    await this._edits.settled();
     if (!this._edits.isChanged) return true;
     this._asked ??= ask({
       heading: words.leave_title,

@@ -37,6 +37,7 @@ export class BillEdits {
   isBusy = false;
   quantities: BillQuantities | null = null;
   measuringProblem = "";
+  private _running: Promise<unknown> = Promise.resolve(); // the last saving
   private _saved: BillDraft | null = null;
   private _etag = "";
   private _past: Step[] = [];
@@ -168,6 +169,11 @@ export class BillEdits {
   // ── the server ─────────────────────────────────────────────────────────────────────────────────
 
   /** Resolves to whether the bill is saved. */
+  /** Waits for a saving that is under way. */
+  async settled(): Promise<void> {
+    await this._running;
+  }
+
   async save(): Promise<boolean> {
     const { draft } = this;
     if (!draft || this.isBusy) return false;
@@ -233,7 +239,9 @@ export class BillEdits {
     this.problem = null;
     this._changed();
     try {
-      await work();
+      const running = work();
+      this._running = running.catch(() => {});
+      await running;
       return true;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
