@@ -99,8 +99,8 @@ Result<void> add_folder(const std::filesystem::path& folder,
   return {};
 }
 
-// Returns all files for one model whose parts the scans are, the scans first. A folder stands for
-// the files in it.
+// Returns the files of one model with parts: first the scans, then the files that they use. A
+// named folder means all such files in it.
 Result<std::vector<std::vector<jobs::ImportFile>>> all_scans(
     const std::vector<std::string>& named) {
   namespace fs = std::filesystem;

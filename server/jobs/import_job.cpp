@@ -30,12 +30,6 @@ constexpr std::size_t kMaxNameLength = 200;
 // Shares of the import time, as measured on scans of 100 000 to 1 000 000 triangles.
 constexpr double kRead = 0.15, kUnfolded = 0.7, kPainted = 0.77, kBuilt = 0.85;
 
-std::string stem(const std::string& filename) {
-  const std::string base = base_filename(filename);
-  const auto dot = base.find_last_of('.');
-  return dot == std::string::npos || dot == 0 ? base : base.substr(0, dot);
-}
-
 bool is_crs(const std::string& crs) {
   constexpr std::string_view kPrefix = "EPSG:";
   const std::size_t digits = crs.size() - std::min(crs.size(), kPrefix.size());
@@ -71,14 +65,15 @@ std::string default_name(const ImportRequest& request) {
     return relative_filename(request.files[(*scans)[i]].filename);
   };
   const std::string first = name_at(0);
-  if (scans->size() == 1) return stem(first);
+  if (scans->size() == 1) return filename_stem(first);
   std::size_t common = first.find_last_of('/');
   for (std::size_t i = 1; i < scans->size() && common != std::string::npos; ++i) {
     const std::string other = name_at(i);
     while (common != std::string::npos && other.compare(0, common + 1, first, 0, common + 1) != 0)
       common = common == 0 ? std::string::npos : first.find_last_of('/', common - 1);
   }
-  return common == std::string::npos ? stem(first) : base_filename(first.substr(0, common));
+  return common == std::string::npos ? filename_stem(first)
+                                     : base_filename(first.substr(0, common));
 }
 
 Result<void> refuse_faults(const std::vector<Repair>& repairs) {

@@ -43,6 +43,12 @@ std::string base_filename(std::string_view path) {
   return out.substr(cut);
 }
 
+std::string filename_stem(std::string_view path) {
+  const std::string base = base_filename(path);
+  const auto dot = base.find_last_of('.');
+  return dot == std::string::npos || dot == 0 ? base : base.substr(0, dot);
+}
+
 std::string relative_filename(std::string_view path) {
   std::string relative;
   while (!path.empty()) {

@@ -34,11 +34,6 @@ FilePath path_of(const std::string& filename) {
   return path;
 }
 
-std::string stem(const std::string& name) {
-  const auto dot = name.find_last_of('.');
-  return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
-}
-
 std::size_t common_folders(const std::vector<FilePath>& paths) {
   std::size_t common = paths.front().folders.size();
   for (const FilePath& path : paths) {
@@ -57,7 +52,7 @@ std::vector<ModelPart> name_parts(const std::vector<LoadedPart>& files) {
   std::vector<ModelPart> parts;
   for (const FilePath& path : paths) {
     ModelPart& part = parts.emplace_back();
-    part.name = stem(path.name);
+    part.name = filename_stem(path.name);
     for (std::size_t i = common; i < path.folders.size(); ++i)
       part.folder += (part.folder.empty() ? "" : "/") + path.folders[i];
   }
@@ -255,9 +250,8 @@ Result<LoadedMesh> join_parts(std::vector<LoadedPart> files) {
     has.uvs |= !mesh.corner_uvs.empty();
     has.materials |= !mesh.triangle_materials.empty();
     has.colors |= !mesh.vertex_colors.empty();
-    joined.mesh.colors_tint_materials =
-        joined.mesh.colors_tint_materials ||
-        (mesh.colors_tint_materials && !mesh.vertex_colors.empty() && !mesh.materials.empty());
+    joined.mesh.colors_tint_materials |=
+        mesh.colors_tint_materials && !mesh.vertex_colors.empty() && !mesh.materials.empty();
   }
   for (const std::size_t i : order) {
     LoadedMesh loaded = std::move(files[i].loaded);

@@ -12,6 +12,7 @@ import {
   type NumberedPart,
   type PartFolder,
 } from "./model-parts";
+import type { ModelPart } from "../../core/protocol.gen";
 import { formatArea } from "../../domain/measure";
 import { followSession } from "../../session/follow-session";
 import type { ModelSession } from "../../session/model-session";
@@ -22,6 +23,9 @@ import { texts } from "../../texts";
 @customElement("strata-part-tree")
 export class StrataPartTree extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
+
+  // The tree follows the view, which changes often. The parts of a model do not change.
+  private _tree: { parts: readonly ModelPart[]; root: PartFolder } | null = null;
 
   constructor() {
     super();
@@ -101,7 +105,12 @@ export class StrataPartTree extends LitElement {
             : nothing
         }
       </div>
-      <div class="tree">${this.list(partTree(parts))}</div>`;
+      <div class="tree">${this.list(this.tree(parts))}</div>`;
+  }
+
+  private tree(parts: readonly ModelPart[]): PartFolder {
+    if (this._tree?.parts !== parts) this._tree = { parts, root: partTree(parts) };
+    return this._tree.root;
   }
 
   private list(folder: PartFolder): TemplateResult {
